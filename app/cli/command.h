@@ -71,6 +71,7 @@ void add_hand_over(CommandLine& line);  // report, reteach
 void add_acceptance(CommandLine& line);
 void add_statistics(CommandLine& line);
 void add_modes(CommandLine& line);
+void add_drift(CommandLine& line);
 void add_device_studies(CommandLine& line);  // measure-robot, measure-trigger
 void add_scan(CommandLine& line);
 void add_fit(CommandLine& line);

@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
     add_acceptance(line);
     add_statistics(line);
     add_modes(line);
+    add_drift(line);
     add_device_studies(line);
     add_scan(line);
     add_fit(line);

@@ -81,7 +81,7 @@ void ServedCamera::Impl::deliver(const SimulatedCell::Waiting& exposure, const W
         state.y + state.height > optics.height)
         return;  // registers that make no image: a client wrote past the description's bounds
     frame.status = FrameStatus::ok;
-    cell->render(exposure.base_from_flange, exposure.number, frame);
+    cell->render(exposure.base_from_flange, exposure.number, frame, nullptr, exposure.sensor_from_drifted);
     std::vector<std::byte> payload = payload_of(frame.image, state, *format);
     {
         const std::lock_guard lock(mutex);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "devices/exchange/pose_json.h"
 #include "devices/host_time.h"
@@ -16,6 +17,15 @@ namespace {
 enum Stream : std::uint64_t { kArrival = 1, kJitter = 2, kFrame = 3, kSurface = 4, kDamage = 5 };
 std::uint64_t stream_seed(std::uint64_t seed, Stream stream, std::uint64_t number) {
     return hash64(hash64(seed, stream), number);
+}
+
+// A share of a small motion: of its translation and of its rotation vector.
+Pose part_of_pose(const Pose& whole, double share) {
+    Pose part = Pose::Identity();
+    const Eigen::AngleAxisd turn(whole.linear());
+    part.linear() = Eigen::AngleAxisd(share * turn.angle(), turn.axis()).toRotationMatrix();
+    part.translation() = share * whole.translation();
+    return part;
 }
 
 }  // namespace
@@ -114,15 +124,17 @@ void SimulatedCell::set_scene(Scene scene) {
 }
 
 void SimulatedCell::render(const Pose& base_from_flange, std::uint64_t frame_seed, Frame& frame,
-                           std::vector<StripeSample>* truth) {
+                           std::vector<StripeSample>* truth, const std::optional<Pose>& sensor_from_drifted) {
     const std::lock_guard render_lock(render_mutex_);
     Scene scene;
     Pose base_from_part;
     Exposure exposure;
+    Pose drifted;
     {
         const std::lock_guard lock(mutex_);
         scene = scene_;
         exposure = exposure_;
+        drifted = sensor_from_drifted ? *sensor_from_drifted : drifted_sensor();
         base_from_part = scene == Scene::part
                              ? settings_.base_from_workobject * part_.workobject_from_movedworkobject
                              : settings_.base_from_target;
@@ -146,7 +158,8 @@ void SimulatedCell::render(const Pose& base_from_flange, std::uint64_t frame_see
         if (scene == Scene::plate) board = settings_.board;
     }
     exposure.seed = stream_seed(settings_.seed, kFrame, frame_seed);
-    const Pose part_from_sensor = base_from_part.inverse() * base_from_flange * settings_.flange_from_sensor;
+    const Pose part_from_sensor =
+        base_from_part.inverse() * base_from_flange * settings_.flange_from_sensor * drifted;
     frame.pixels.resize(renderer_.image_bytes());
     renderer_.render(*tree, part_from_sensor, exposure, stream_seed(settings_.seed, kSurface, 0),
                      frame.pixels, truth, board);
@@ -169,7 +182,55 @@ Pose SimulatedCell::arrived(const Pose& commanded) {
     Vector6 scatter;
     scatter << settings_.robot.repeatability_mm * random.normal3(),
         rad_from_deg(settings_.robot.repeatability_deg) * random.normal3();
-    return retract(commanded, scatter);
+    return retract(part_of_pose(settings_.drift.robot, drifted_share()) * commanded, scatter);
+}
+
+void SimulatedCell::part_begins() {
+    const std::int64_t now = host_now_ns();
+    if (++parts_ == 1) first_part_ns_ = now;
+    if (parts_ == std::max<std::uint64_t>(1, settings_.drift.from_part)) drift_ns_ = now;
+}
+
+double SimulatedCell::drifted_share() const {
+    const CellDrift& d = settings_.drift;
+    const std::uint64_t first = std::max<std::uint64_t>(1, d.from_part);
+    if (parts_ < first || (d.time_constant_parts <= 0 && d.time_constant_s <= 0)) return 0;
+    double share = 1;
+    if (d.time_constant_parts > 0)
+        share *= std::exp(-static_cast<double>(parts_ - first) / d.time_constant_parts);
+    if (d.time_constant_s > 0)
+        share *= std::exp(-1e-9 * static_cast<double>(host_now_ns() - drift_ns_) / d.time_constant_s);
+    return 1 - share;
+}
+
+Pose SimulatedCell::drifted_sensor() const {
+    const CellDrift& d = settings_.drift;
+    const bool bumped =
+        !mended_ && ((d.bump_at_part > 0 && parts_ >= d.bump_at_part) ||
+                     (d.bump_at_s > 0 && parts_ > 0 &&
+                      1e-9 * static_cast<double>(host_now_ns() - first_part_ns_) >= d.bump_at_s));
+    const Pose drifted = part_of_pose(d.sensor, drifted_share());
+    return bumped ? drifted * d.bump : drifted;
+}
+
+std::uint64_t SimulatedCell::parts() const {
+    const std::lock_guard lock(mutex_);
+    return parts_;
+}
+
+Pose SimulatedCell::sensor_from_drifted() const {
+    const std::lock_guard lock(mutex_);
+    return drifted_sensor();
+}
+
+Pose SimulatedCell::base_from_drifted() const {
+    const std::lock_guard lock(mutex_);
+    return part_of_pose(settings_.drift.robot, drifted_share());
+}
+
+void SimulatedCell::mend_bump() {
+    const std::lock_guard lock(mutex_);
+    mended_ = true;
 }
 
 void SimulatedCell::move_to(const Pose& base_from_flange) {
@@ -190,6 +251,7 @@ std::optional<Pose> SimulatedCell::true_flange() const {
 
 void SimulatedCell::start_moves(std::vector<MeasuringMove> moves) {
     const std::lock_guard lock(mutex_);
+    part_begins();
     moves_.assign(std::make_move_iterator(moves.begin()), std::make_move_iterator(moves.end()));
 }
 
@@ -210,6 +272,7 @@ Expected<void> SimulatedCell::start_program() {
     if (program_.empty())
         return device_error("the controller holds no measuring program", "simulated robot",
                             "load the program that was generated from the project");
+    part_begins();
     moves_.assign(program_.begin(), program_.end());
     return {};
 }
@@ -249,6 +312,8 @@ void SimulatedCell::fire(const Pose& base_from_flange, const Eigen::Vector3d& ve
         program_.begin(), program_.end(), [&](const MeasuringMove& a, const MeasuringMove& b) {
             return distance_mm(a.trigger, base_from_flange) < distance_mm(b.trigger, base_from_flange);
         });
+    // A program that is executed begins with its first spot.
+    if (nearest == program_.begin() && nearest != program_.end()) part_begins();
     commanded_ = base_from_flange;
     Pose at = arrived(base_from_flange);
     at.translation() += trigger_error(velocity_mm_s);
@@ -301,7 +366,7 @@ void SimulatedCell::expose(const std::string& spot_id, const Pose& base_from_fla
         ++lost_;
         return;
     }
-    waiting_.push_back({spot_id, base_from_flange, number, host_now_ns()});
+    waiting_.push_back({spot_id, base_from_flange, number, host_now_ns(), drifted_sensor()});
 }
 
 Expected<void> SimulatedCell::software_trigger(const std::string& spot_id) {

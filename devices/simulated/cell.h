@@ -40,6 +40,18 @@ struct RobotSettings {
     std::map<std::string, Pose> frames;  // base_from_frame by name
 };
 
+// What goes wrong with the cell by and by, and at once. A time constant in parts counts measuring programs, one in seconds the
+// time since the first part that drifts; with both 0 nothing drifts.
+struct CellDrift {
+    Pose sensor = Pose::Identity();  // sensor_from_drifted, when all of it has come
+    Pose robot = Pose::Identity();   // base_from_drifted: where the robot stands instead
+    double time_constant_parts = 0, time_constant_s = 0;
+    std::uint64_t from_part = 0;     // parts before it see nothing of the drift
+    Pose bump = Pose::Identity();    // sensor_from_bumped
+    std::uint64_t bump_at_part = 0;  // from this part on; 0: never
+    double bump_at_s = 0;            // or so long after the first part; 0: never
+};
+
 struct CellSettings {
     std::uint64_t seed = 1;
     Scene scene = Scene::part;
@@ -57,6 +69,7 @@ struct CellSettings {
     double sphere_radius_mm = 25;
     PlatePattern board{7, 6, 10, 0.1};
     std::string serial = "SIM-1";
+    CellDrift drift;
 };
 CellSettings default_cell_settings();
 // Refuses unknown fields, wrong types and values out of range, with the field's path.
@@ -87,11 +100,20 @@ class SimulatedCell {
 
     // The next part in the fixture; the scene before the sensor.
     void set_part(const PartState& part);
+    // Parts that the robot has begun, from 1.
+    std::uint64_t parts() const;
+    // What drift and bump have made of the sensor and the robot by now.
+    Pose sensor_from_drifted() const;
+    Pose base_from_drifted() const;
+    // Somebody puts the sensor back: the bump is gone.
+    void mend_bump();
     void set_scene(Scene scene);
 
     // Renders what the sensor sees with the flange exactly there. `frame.pixels` grows once.
+    // `sensor_from_drifted`: where the sensor stands by then; absent: now.
     void render(const Pose& base_from_flange, std::uint64_t frame_seed, Frame& frame,
-                std::vector<StripeSample>* truth = nullptr);
+                std::vector<StripeSample>* truth = nullptr,
+                const std::optional<Pose>& sensor_from_drifted = std::nullopt);
 
     // Robot. Arrivals scatter by the repeatability; what the controller reports is where it was sent.
     void move_to(const Pose& base_from_flange);
@@ -122,6 +144,7 @@ class SimulatedCell {
         Pose base_from_flange = Pose::Identity();  // true
         std::uint64_t number = 0;
         std::int64_t time_ns = 0;
+        Pose sensor_from_drifted = Pose::Identity();  // at the exposure
     };
     void arm(bool armed);  // hardware triggers count only while armed
     // Exposes at the present pose, unless the robot's trigger for this spot still waits: that is the same
@@ -135,6 +158,9 @@ class SimulatedCell {
   private:
     SimulatedCell(const CellSettings& settings, TriangleMesh part);
     Pose arrived(const Pose& commanded);  // precondition: locked
+    void part_begins();                   // precondition: locked
+    double drifted_share() const;         // 0 to 1; precondition: locked
+    Pose drifted_sensor() const;          // precondition: locked
     // Latency and jitter of the trigger at that velocity. Precondition: locked.
     Eigen::Vector3d trigger_error(const Eigen::Vector3d& velocity_mm_s);
     void expose(const std::string& spot_id, const Pose& base_from_flange);
@@ -154,7 +180,9 @@ class SimulatedCell {
     std::vector<MeasuringMove> program_;
     std::deque<MeasuringMove> moves_;
     std::deque<Waiting> waiting_;
-    bool armed_ = false;
+    bool armed_ = false, mended_ = false;
+    std::uint64_t parts_ = 0;
+    std::int64_t first_part_ns_ = 0, drift_ns_ = 0;
     std::uint64_t exposures_ = 0, arrivals_ = 0, lost_ = 0;
     std::map<std::string, Pose> frames_;
     RobotMode mode_;

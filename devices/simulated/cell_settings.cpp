@@ -121,6 +121,20 @@ const SettingTable& simulated_cell_settings() {
                     whole("rows", d.board.rows, 2, 50, "inner corners"),
                     number("pitch_mm", d.board.pitch_mm, 0.5, 200, "between corners")},
                    "chessboard of the scene plate"),
+            object(
+                "drift",
+                {pose("sensor", "what the sensor on the wrist moves by when the cell is warm, sensor frame"),
+                 pose("robot", "what the robot moves by when the cell is warm, base"),
+                 number("time_constant_parts", d.drift.time_constant_parts, 0, 1e6,
+                        "of the warm-up, in parts; 0: not by parts"),
+                 number("time_constant_s", d.drift.time_constant_s, 0, 1e6,
+                        "of the warm-up, in seconds; 0: not by time"),
+                 whole("from_part", d.drift.from_part, 0, 9e15, "parts before this one see nothing of it"),
+                 pose("bump", "what the sensor is knocked by, sensor frame"),
+                 whole("bump_at_part", d.drift.bump_at_part, 0, 9e15, "knocked before this part; 0: never"),
+                 number("bump_at_s", d.drift.bump_at_s, 0, 1e6,
+                        "knocked so long after the first part; 0: never")},
+                "warm-up and a knock; without a time constant nothing drifts"),
             object("robot",
                    {number("repeatability_mm", d.robot.repeatability_mm, 0, 10,
                            "one sigma per axis, anew at every arrival"),
@@ -199,6 +213,16 @@ Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
         o.whole("columns", s.board.columns);
         o.whole("rows", s.board.rows);
         o.number("pitch_mm", s.board.pitch_mm);
+    });
+    f.object("drift", [&](SettingsReader& o) {
+        o.pose("sensor", s.drift.sensor);
+        o.pose("robot", s.drift.robot);
+        o.number("time_constant_parts", s.drift.time_constant_parts);
+        o.number("time_constant_s", s.drift.time_constant_s);
+        o.whole("from_part", s.drift.from_part);
+        o.pose("bump", s.drift.bump);
+        o.whole("bump_at_part", s.drift.bump_at_part);
+        o.number("bump_at_s", s.drift.bump_at_s);
     });
     f.object("robot", [&](SettingsReader& o) {
         o.number("repeatability_mm", s.robot.repeatability_mm);

@@ -113,7 +113,8 @@ class SimulatedSensor final : public ProfileSource {
 
   private:
     void deliver(const SimulatedCell::Waiting& exposure, Frame& frame) {
-        cell_->render(exposure.base_from_flange, exposure.number, frame);
+        cell_->render(exposure.base_from_flange, exposure.number, frame, nullptr,
+                      exposure.sensor_from_drifted);
         frame.spot_id = exposure.spot_id;
         frame.sequence = exposure.number;
         frame.device_time_ns = exposure.time_ns;

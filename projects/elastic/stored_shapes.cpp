@@ -82,7 +82,8 @@ Expected<StoredShapes> stored_shapes(const ProjectFile& file, const std::string&
         }
         SEAM_TRY(const RunRecord run, file.load_run(summary.number, false));
         StoredShape shape;
-        shape.observations = region_observations(project, *region, run.spots);
+        shape.observations =
+            region_observations(project, *region, without_drift(project, run.spots, acting_drift(run)));
         const auto rigid =
             shape.observations.empty() ? Expected<void>{} : corrector.correct(shape.observations, correction);
         const auto solved = shape.observations.empty() || !rigid

@@ -138,6 +138,13 @@ class ProjectFile {
     // Those with an id above `after`, oldest first.
     Expected<std::vector<Evidence>> evidence(std::int64_t after = 0) const;
 
+    // Points of the drift watch: kept when their runs are deleted. Returns the point's id.
+    Expected<std::int64_t> append_drift_point(const DriftPoint& point);
+    // The watch alone, as the file has it now: a person may acknowledge while another program measures.
+    Expected<std::optional<DriftWatch>> load_drift_watch() const;
+    // The newest ones and, however old, those of a step, oldest first; 0 = all.
+    Expected<std::vector<DriftPoint>> drift_points(std::int64_t newest = 0) const;
+
     // The long check: SQLite's integrity_check, foreign keys, every row decoded, every blob's checksum. Empty
     // = sound.
     std::vector<Error> check() const;

@@ -13,6 +13,8 @@ namespace seamwright {
     }
 SEAMWRIGHT_WORDS(ScanLines, "columns", "rows");
 SEAMWRIGHT_WORDS(PeakMethod, "centre_of_gravity", "gaussian", "steger");
+SEAMWRIGHT_WORDS(DriftVerdict, "learning", "fine", "watch", "recalibrate", "step");
+SEAMWRIGHT_WORDS(DriftOf, "sensor", "robot");
 SEAMWRIGHT_WORDS(ReferenceState, "measured", "from_drawing", "from_type");
 SEAMWRIGHT_WORDS(RobotMode, "unknown", "manual_reduced", "manual_full", "automatic", "external", "stopped",
                  "fault");
@@ -501,6 +503,80 @@ void describe(A& a, RegionModes& v) {
     }
 }
 template <class A>
+void describe(A& a, LearntDirection& v) {
+    a("spot_id", v.spot_id);
+    a("axis", v.axis);
+    a("mean_mm", v.mean_mm);
+    a("sigma_mm", v.sigma_mm);
+    a("stated_mm", v.stated_mm);
+    a("warm_up_mm", v.warm_up_mm);
+}
+template <class A>
+void describe(A& a, LearntDrift& v) {
+    a("utc", v.utc);
+    a("first_point", v.first_point);
+    a("last_point", v.last_point);
+    a("points", v.points);
+    a("degrees", v.degrees);
+    a("time_constant_s", v.time_constant_s);
+    a("mark", v.mark);
+    a("directions", v.directions);
+}
+template <class A>
+void describe(A& a, SetAside& v) {
+    a("first_point", v.first_point);
+    a("last_point", v.last_point);
+    a("utc", v.utc);
+    a("by", v.by);
+    a("text", v.text);
+}
+template <class A>
+void describe(A& a, DriftWatch& v) {
+    a("id", v.id);
+    a("spot_ids", v.spot_ids);
+    a("every_parts", v.every_parts);
+    a("every_minutes", v.every_minutes);
+    a("limit_mm", v.limit_mm);
+    a("pause_minutes", v.pause_minutes);
+    a("compensate", v.compensate);
+    a("drifts", v.drifts);
+    a("most_mm", v.most_mm);
+    a("switched_utc", v.switched_utc);
+    a("learnt", v.learnt);
+    a("set_aside", v.set_aside);
+    if constexpr (A::reading) {
+        if (!(v.limit_mm > 0) || !(v.most_mm > 0) || !(v.pause_minutes > 0) || !(v.every_minutes >= 0) ||
+            v.every_parts < 0)
+            a.fail("a limit or interval of the drift watch is no positive number");
+    }
+}
+template <class A>
+void describe(A& a, DriftPoint& v) {
+    a("id", v.id);
+    a("run", v.run);
+    a("utc", v.utc);
+    a("mark", v.mark);
+    a("running_s", v.running_s);
+    a("pause_s", v.pause_s);
+    a("values_mm", v.values_mm);
+    a("sigma_mm", v.sigma_mm);
+    a("verdict", v.verdict);
+    a("step", v.step);
+    a("changed", v.changed);
+    a("text", v.text);
+}
+template <class A>
+void describe(A& a, ActingDrift& v) {
+    a("verdict", v.verdict);
+    a("text", v.text);
+    a("compensated", v.compensated);
+    a("why", v.why);
+    a("drifts", v.drifts);
+    a("device_id", v.device_id);
+    a("shift_mm", v.shift_mm);
+    a("sigma_mm", v.sigma_mm);
+}
+template <class A>
 void describe(A& a, Project& v) {
     a("name", v.name);
     a("requirements", v.requirements);
@@ -514,6 +590,7 @@ void describe(A& a, Project& v) {
     a("panel_jobs", v.panel_jobs);
     if (A::reading || !v.line.empty()) a("line", v.line);
     if (A::reading || !v.elastic.empty()) a("elastic", v.elastic);
+    if (A::reading || v.drift) a("drift", v.drift);
 }
 
 // --- runs
@@ -566,6 +643,7 @@ void describe(A& a, RegionRecord& v) {
     a("push", v.push);
     if (A::reading || v.offset) a("offset", v.offset);
     if (A::reading || v.modes) a("modes", v.modes);
+    if (A::reading || v.drift) a("drift", v.drift);
 }
 
 template <class A>
@@ -769,6 +847,8 @@ SEAMWRIGHT_DOCUMENT(Calibration);
 SEAMWRIGHT_DOCUMENT(Spot);
 SEAMWRIGHT_DOCUMENT(Region);
 SEAMWRIGHT_DOCUMENT(RegionModes);
+SEAMWRIGHT_DOCUMENT(DriftWatch);
+SEAMWRIGHT_DOCUMENT(DriftPoint);
 SEAMWRIGHT_DOCUMENT(PanelJob);
 SEAMWRIGHT_DOCUMENT(PanelMeasurement);
 SEAMWRIGHT_DOCUMENT(PanelRecord);

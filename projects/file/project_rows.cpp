@@ -106,6 +106,11 @@ Expected<void> load_rows(Database& db, const char* sql, const char* kind, std::v
     });
 }
 
+// None or one.
+std::vector<DriftWatch> drift_of(const Project& project) {
+    return project.drift ? std::vector<DriftWatch>{*project.drift} : std::vector<DriftWatch>{};
+}
+
 }  // namespace
 
 Expected<void> save_rows_of(Database& db, const Project& project) {
@@ -118,7 +123,8 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
           check_ids(db, "panel_jobs", ids_of(project.panel_jobs), "panel job"),
           check_ids(db, "line", ids_of(project.line), "line link"),
           check_ids(db, "part_types", ids_of(project.part_types), "part type"),
-          check_ids(db, "elastic", ids_of(project.elastic), "region with mode"), check_part_types(project)})
+          check_ids(db, "elastic", ids_of(project.elastic), "region with mode"),
+          check_ids(db, "drift_watch", ids_of(drift_of(project)), "drift watch"), check_part_types(project)})
         if (!sound) return sound;
 
     const char* name_row = R"(
@@ -220,9 +226,15 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
                           s.bind(4, text);
                           return s.run();
                       }));
-    return save_rows(db, "elastic", {"body"}, project.elastic,
-                     [](Statement& s, const RegionModes& modes) -> Expected<void> {
-                         SEAM_TRY(auto text, row_text(modes, "modes of region " + modes.id, kRow));
+    SEAM_OK(save_rows(db, "elastic", {"body"}, project.elastic,
+                      [](Statement& s, const RegionModes& modes) -> Expected<void> {
+                          SEAM_TRY(auto text, row_text(modes, "modes of region " + modes.id, kRow));
+                          s.bind(3, text);
+                          return s.run();
+                      }));
+    return save_rows(db, "drift_watch", {"body"}, drift_of(project),
+                     [](Statement& s, const DriftWatch& drift) -> Expected<void> {
+                         SEAM_TRY(auto text, row_text(drift, "drift watch", kRow));
                          s.bind(3, text);
                          return s.run();
                      });
@@ -230,9 +242,10 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
 
 Expected<Project> load_rows_of(Database& db) {
     for (const char* table : {"project", "requirements", "part", "sensors", "robots", "calibrations", "spots",
-                              "regions", "panel_jobs", "line", "part_types", "elastic"})
+                              "regions", "panel_jobs", "line", "part_types", "elastic", "drift_watch"})
         SEAM_OK(check_rows(db, table));
     Project project;
+    std::vector<DriftWatch> drift;
     SEAM_TRY(auto name, db.prepare("SELECT name FROM project"));
     SEAM_OK(for_each_row(name, [&](Statement& row) -> Expected<void> {
         project.name = row.text(0);
@@ -265,9 +278,10 @@ Expected<Project> load_rows_of(Database& db) {
           load_rows(db, "SELECT id, body FROM line ORDER BY position", "line link", project.line),
           load_rows(db, "SELECT id, body FROM part_types ORDER BY position", "part type", project.part_types),
 
-          load_rows(db, "SELECT id, body FROM elastic ORDER BY position", "modes of region",
-                    project.elastic)})
+          load_rows(db, "SELECT id, body FROM elastic ORDER BY position", "modes of region", project.elastic),
+          load_rows(db, "SELECT id, body FROM drift_watch ORDER BY position LIMIT 1", "drift watch", drift)})
         if (!done) return tl::unexpected(done.error());
+    if (!drift.empty()) project.drift = std::move(drift.front());
     return project;
 }
 

@@ -177,6 +177,7 @@ Expected<RunSetup> RunSetup::of(const Project& project) {
     slim.part.mesh_ply.clear();
     slim.requirements.acceptance = {};
     slim.line.clear();
+    slim.drift.reset();
     std::erase_if(slim.elastic, [](const RegionModes& modes) { return !modes.on; });
     for (Calibration& c : slim.calibrations) {
         c.raw = nlohmann::json::object();
@@ -330,6 +331,50 @@ Expected<std::int64_t> ProjectFile::append_event(const EventRecord& event) {
     const std::int64_t id = impl_->db.last_rowid();
     SEAM_OK(transaction.commit());
     return id;
+}
+
+Expected<std::int64_t> ProjectFile::append_drift_point(const DriftPoint& point) {
+    Database& db = impl_->db;
+    SEAM_TRY(auto transaction, Transaction::begin(db));
+    SEAM_TRY(auto text, row_text(point, "drift watch", kResult));
+    SEAM_TRY(auto s, db.prepare("INSERT INTO drift_points (run, body) VALUES (?, ?)"));
+    s.bind(1, point.run);
+    s.bind(2, text);
+    SEAM_OK(s.run());
+    const std::int64_t id = db.last_rowid();
+    SEAM_OK(seal_row(db, "drift_points", "id", id));
+    SEAM_OK(transaction.commit());
+    return id;
+}
+
+Expected<std::optional<DriftWatch>> ProjectFile::load_drift_watch() const {
+    SEAM_OK(check_rows(impl_->db, "drift_watch"));
+    SEAM_TRY(auto s, impl_->db.prepare("SELECT body FROM drift_watch ORDER BY position LIMIT 1"));
+    std::optional<DriftWatch> watch;
+    SEAM_OK(for_each_row(s, [&](Statement& row) -> Expected<void> {
+        SEAM_TRY(watch, row_value<DriftWatch>(row.text(0), "drift watch", impl_->path.string(), kRow));
+        return {};
+    }));
+    return watch;
+}
+
+Expected<std::vector<DriftPoint>> ProjectFile::drift_points(std::int64_t newest) const {
+    SEAM_OK(check_rows(impl_->db, "drift_points"));
+    SEAM_TRY(
+        auto s,
+        impl_->db.prepare(
+            "SELECT id, body FROM drift_points WHERE id IN (SELECT id FROM drift_points ORDER BY id DESC "
+            "LIMIT ?) OR json_extract(body, '$.step') ORDER BY id"));
+    s.bind(1, newest > 0 ? newest : -1);
+    std::vector<DriftPoint> points;
+    SEAM_OK(for_each_row(s, [&](Statement& row) -> Expected<void> {
+        SEAM_TRY(auto point, row_value<DriftPoint>(row.text(1), Text("drift point {}", row.integer(0)),
+                                                   impl_->path.string(), kResult));
+        point.id = row.integer(0);
+        points.push_back(std::move(point));
+        return {};
+    }));
+    return points;
 }
 
 Expected<std::int64_t> ProjectFile::append_evidence(const Evidence& evidence, const Project& setup) {
@@ -556,6 +601,7 @@ std::vector<Error> ProjectFile::check() const {
         findings.push_back(proven.error());
     else
         for (const Evidence& e : *proven) check_setup(e.setup);
+    if (auto points = drift_points(); !points) findings.push_back(points.error());
     auto list = runs();
     if (!list) {
         findings.push_back(list.error());

@@ -9,7 +9,7 @@
 namespace seamwright {
 namespace {
 
-constexpr std::array<ChecksummedTable, 20> kTables{{
+constexpr std::array<ChecksummedTable, 22> kTables{{
     {"project", "name", "id, name, created_utc"},
     {"requirements", "id", "id, body"},
     {"part", "id", "id, body, mesh"},
@@ -23,6 +23,8 @@ constexpr std::array<ChecksummedTable, 20> kTables{{
     {"part_types", "id", "id, position, body", 8},
     {"run_types", "run", "run, type_id", 8},
     {"elastic", "id", "id, position, body", 9},
+    {"drift_watch", "id", "id, position, body", 10},
+    {"drift_points", "id", "id, run, body", 10},
     {"setups", "id", "id, crc, body"},
     {"runs", "number", "number, part_id, started_utc, finished_utc, push, status, message, setup"},
     {"run_spots", "run", "run, position, spot_id, status, body"},

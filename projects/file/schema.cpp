@@ -238,15 +238,33 @@ CREATE TABLE elastic (
 ) STRICT;
 )sql";
 
-constexpr std::array<Migration, 9> kMigrations{{{1, kVersion1},
-                                                {2, kVersion2},
-                                                {3, kVersion3},
-                                                {4, kVersion4},
-                                                {5, kVersion5},
-                                                {6, kVersion6},
-                                                {7, kVersion7},
-                                                {8, kVersion8},
-                                                {9, kVersion9}}};
+// The drift watch and its points. A program that knew nothing of it would push after a step, and take nothing off where a
+// person has switched compensation on.
+constexpr const char* kVersion10 = R"sql(
+CREATE TABLE drift_watch (
+    id TEXT PRIMARY KEY NOT NULL,
+    position INTEGER NOT NULL,
+    body TEXT NOT NULL,
+    checksum INTEGER NOT NULL
+) STRICT;
+CREATE TABLE drift_points (
+    id INTEGER PRIMARY KEY AUTOINCREMENT,
+    run INTEGER NOT NULL,
+    body TEXT NOT NULL,
+    checksum INTEGER NOT NULL DEFAULT 0
+) STRICT;
+)sql";
+
+constexpr std::array<Migration, 10> kMigrations{{{1, kVersion1},
+                                                 {2, kVersion2},
+                                                 {3, kVersion3},
+                                                 {4, kVersion4},
+                                                 {5, kVersion5},
+                                                 {6, kVersion6},
+                                                 {7, kVersion7},
+                                                 {8, kVersion8},
+                                                 {9, kVersion9},
+                                                 {10, kVersion10}}};
 
 // The tables of a fresh file of that version; made once for each version, since making them costs more than
 // checking a file does.

@@ -77,6 +77,8 @@ struct GateRequest {
     // theirs, so the frame that stands there is judged by theirs too, within their own limits. One whose limits are
     // none (limits_that_are_none()) counts for nothing.
     std::vector<Region> frame_of_other_types = {};
+    Text drift_trouble =
+        {};  // why the drift watch stops production: a step, a drift beyond what may be compensated
 };
 
 // Limits beyond these are none.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/geometry/notation.h"
+#include "projects/drift/drift_keeper.h"
 #include "projects/file/stored_text.h"
 #include "projects/hand_over/hand_over_detail.h"
 #include "projects/measure/measure.h"
@@ -246,6 +247,38 @@ void limits_chapter(HandOverWriter& w) {
     w.page.table(rows);
 }
 
+Expected<void> drift_chapter(HandOverWriter& w, const ProjectFile& file) {
+    if (!w.project.drift) return {};
+    const DriftWatch& watch = *w.project.drift;
+    SEAM_TRY(const auto s, stored_standing(file, w.project, w.options.now_utc));
+    w.page.heading(w.t("Drift watch"));
+    const auto tone = s.stopped || s.verdict == DriftVerdict::recalibrate ? report::Tone::alarm
+                      : s.verdict == DriftVerdict::fine                   ? report::Tone::good
+                                                                          : report::Tone::attention;
+    w.page.verdict(std::string(to_string(s.verdict)), tone, s.text.in(w.options.language));
+    w.page.paragraph(w.t("{} points of the references; the last one at {} UTC, {} parts ago.", s.points,
+                         w.time_of(s.last_utc), s.parts_since));
+    if (watch.learnt) {
+        Rows rows{
+            {w.t("Direction"), w.t("1 sigma mm"), w.t("stated mm"), w.t("warm-up mm"), w.t("now off mm")}};
+        for (std::size_t d = 0; d < watch.learnt->directions.size(); ++d) {
+            const LearntDirection& direction = watch.learnt->directions[d];
+            rows.push_back({name_of(direction), w.number(direction.sigma_mm, 4),
+                            w.number(direction.stated_mm, 4), w.number(direction.warm_up_mm, 3),
+                            d < s.level_mm.size() ? w.number(s.level_mm[d], 4) : "-"});
+        }
+        w.page.table(rows);
+    }
+    if (watch.compensate)
+        w.page.verdict(w.t("compensated"), report::Tone::attention,
+                       w.t("Switched on by a person ({}), at most {} mm: {}.", w.time_of(watch.switched_utc),
+                           w.number(watch.most_mm, 3), said_of(s.acting)));
+    for (const SetAside& range : watch.set_aside)
+        w.page.paragraph(
+            w.t("A step was acknowledged by {} on {}: {}", range.by, w.time_of(range.utc), range.text));
+    return {};
+}
+
 Expected<void> events_chapter(HandOverWriter& w, const ProjectFile& file) {
     SEAM_TRY(auto events, file.events());
     w.page.heading(w.t("Event log"));
@@ -286,6 +319,7 @@ Expected<report::Page> hand_over_report(const ProjectFile& file, const Project& 
     headless_chapter(w);
     SEAM_OK(acceptance_chapter(w, file));
     SEAM_OK(panels_chapter(w, file));
+    SEAM_OK(drift_chapter(w, file));
     SEAM_OK(events_chapter(w, file));
     page.heading(w.t("Hand-over"));
     page.paragraph(w.t("The cell was handed over in the state that this report describes."));

@@ -404,6 +404,16 @@ void take_off(const KeptOffset& kept, RegionRecord& record) {
     record.offset = ActingOffset{kept.version, kept.offset_mm};
 }
 
+// The error of what was compensated is the same at all spots: stated as a translation in every direction.
+void add_systematic(RegionCorrection& c, double sigma_mm) {
+    const double variance = sigma_mm * sigma_mm;
+    for (Matrix6* sum : {&c.covariance, &c.covariance_systematic})
+        sum->topLeftCorner<3, 3>().diagonal().array() += variance;
+    for (Eigen::Vector3d* sigma : {&c.sigma_xyz_mm, &c.sigma_systematic.xyz_mm})
+        *sigma = (sigma->array().square() + variance).sqrt();
+    c.sigma_at_spots_mm = std::hypot(c.sigma_at_spots_mm, sigma_mm);
+}
+
 // The frame stays the rigid answer, which fits an unbent path best; a path that is corrected point by point is bent too
 // (path.h).
 void bend(const RegionModes& modes, const CorrectionOptions& options,
@@ -454,14 +464,37 @@ std::vector<SpotObservation> region_observations(const Project& project, const R
     return observations;
 }
 
+std::vector<SpotMeasurement> without_drift(const Project& project,
+                                           std::span<const SpotMeasurement> measurements,
+                                           const ActingDrift* drift) {
+    std::vector<SpotMeasurement> out(measurements.begin(), measurements.end());
+    if (!drift || !drift->compensated) return out;
+    for (SpotMeasurement& m : out) {
+        const Spot* spot = find_spot(project, m.spot_id);
+        if (!spot || m.status != SpotStatus::measured) continue;
+        if (drift->drifts == DriftOf::sensor) {
+            if (spot->sensor_id == drift->device_id) m.measured_mm -= drift->shift_mm;
+            continue;
+        }
+        const Calibration* calibration = calibration_of(project, *spot);
+        if (!calibration || spot->robot_id != drift->device_id) continue;
+        const Pose base_from_sensor = spot->base_from_flange * calibration->flange_from_sensor;
+        m.measured_mm -= base_from_sensor.linear().transpose() * drift->shift_mm;
+    }
+    return out;
+}
+
 std::vector<RegionRecord> correct_regions(const Project& project,
-                                          std::span<const SpotMeasurement> measurements) {
+                                          std::span<const SpotMeasurement> as_measured,
+                                          const ActingDrift* drift) {
+    const std::vector<SpotMeasurement> measurements = without_drift(project, as_measured, drift);
     std::vector<RegionRecord> records;
     for (const Region& region : project.regions) {
         RegionRecord& record = records.emplace_back();
         record.region_id = region.id;
         record.base_from_frame = region.base_from_frame;
         record.push.frame_name = region.frame_name;
+        if (drift) record.drift = *drift;
         int uncalibrated = 0;
         std::vector<SpotObservation> observations =
             region_observations(project, region, measurements, &uncalibrated);
@@ -480,6 +513,7 @@ std::vector<RegionRecord> correct_regions(const Project& project,
         if (const RegionModes* modes = modes_of(project, region.id); modes && modes->on)
             bend(*modes, correction_options(project, region), observations, record);
         if (const KeptOffset* kept = acting_offset(region)) take_off(*kept, record);
+        if (drift && drift->compensated) add_systematic(*record.correction, drift->sigma_mm);
     }
     return records;
 }

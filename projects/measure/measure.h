@@ -127,7 +127,16 @@ std::vector<SpotObservation> region_observations(const Project& project, const R
 // Spots that are not measured are left out; a region without any, or whose solver refuses the input, has no
 // correction and says why in `refusals`. Where a region's modes are switched on, RegionRecord::modes says
 // whether they act; the frame stays rigid, a path is bent (path.h). A kept offset that acts is taken off, and said in RegionRecord::offset.
+// `drift`: what the drift watch says of the run, and takes off the measurements of its sensor or robot where it compensates
+// (without_drift()); in every record then.
 std::vector<RegionRecord> correct_regions(const Project& project,
-                                          std::span<const SpotMeasurement> measurements);
+                                          std::span<const SpotMeasurement> measurements,
+                                          const ActingDrift* drift = nullptr);
+
+// The measurements with what is compensated taken off: sensor frame, or base turned into each spot's sensor frame. As they
+// are where nothing is.
+std::vector<SpotMeasurement> without_drift(const Project& project,
+                                           std::span<const SpotMeasurement> measurements,
+                                           const ActingDrift* drift);
 
 }  // namespace seamwright

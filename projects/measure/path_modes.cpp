@@ -53,7 +53,8 @@ Eigen::Matrix3d across(const std::vector<PathPoint>& taught, std::size_t i, bool
 Expected<ElasticCorrection> joint_again(const Project& setup, const Region& region, const RunRecord& run) {
     const RegionModes* modes = modes_of(setup, region.id);
     if (!modes) return input_error("none were learnt", Text("region {}: modes", region.id));
-    std::vector<SpotObservation> spots = region_observations(setup, region, run.spots);
+    std::vector<SpotObservation> spots =
+        region_observations(setup, region, without_drift(setup, run.spots, acting_drift(run)));
     RegionCorrection rigid;
     SEAM_OK(RegionCorrector(setup, region).correct(spots, rigid));
     ElasticOptions limits;

@@ -25,6 +25,7 @@
 #include "core/text.h"
 #include "devices/profile_source.h"
 #include "devices/robot_link.h"
+#include "projects/model/drift_watch.h"
 #include "projects/model/elastic_modes.h"
 #include "projects/model/panel_job.h"
 
@@ -224,6 +225,7 @@ struct Project {
     std::vector<PanelJob> panel_jobs;
     std::vector<LineSetup> line;  // no part of a run's setup: it measures nothing
     std::vector<RegionModes> elastic;
+    std::optional<DriftWatch> drift;  // no part of a run's setup: the run says what acted
 };
 
 // A region's modes; nullptr: none were learnt.

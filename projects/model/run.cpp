@@ -19,6 +19,21 @@ Text said_of(const ActingOffset& offset) {
                 by.y(), by.z());
 }
 
+const ActingDrift* acting_drift(const RunRecord& run) {
+    for (const RegionRecord& region : run.regions)
+        if (region.drift) return &*region.drift;
+    return nullptr;
+}
+
+Text said_of(const ActingDrift& drift) {
+    if (!drift.compensated)
+        return drift.why.empty() ? Text("drift watch: {}", drift.text)
+                                 : Text("drift watch: {}; nothing is compensated: {}", drift.text, drift.why);
+    const Eigen::Vector3d& by = drift.shift_mm;
+    return Text("drift watch: {}; compensated as drift of {}: X {:.3f} Y {:.3f} Z {:.3f} mm are taken off",
+                drift.text, drift.device_id, by.x(), by.y(), by.z());
+}
+
 Text said_of(const ActingModes& modes) {
     if (!modes.acted) return Text("the modes do not act, the part is taken for rigid: {}", modes.why);
     return Text("{} modes act: at most {:.3f} mm are added at a spot", modes.amplitudes_mm.size(),

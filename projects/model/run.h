@@ -15,6 +15,7 @@
 #include "core/profile/profile.h"
 #include "core/text.h"
 #include "devices/capture/capture.h"
+#include "projects/model/drift_watch.h"
 #include "projects/model/elastic_modes.h"
 
 namespace seamwright {
@@ -90,6 +91,7 @@ struct RegionRecord {
     PushRecord push;
     std::optional<ActingOffset> offset;
     std::optional<ActingModes> modes;  // where they were switched on
+    std::optional<ActingDrift> drift;  // of a project with a drift watch
 };
 
 // One place of a panel job (panel_job.h), in the place's frame.
@@ -171,5 +173,8 @@ struct RunRecord {
     std::vector<Capture> captures;
     std::vector<EventRecord> events;
 };
+// What the drift watch said of it and took off: one for all regions. It follows from the runs before, so it is taken from the
+// record and never computed again. nullptr: no watch, or no region.
+const ActingDrift* acting_drift(const RunRecord& run);
 
 }  // namespace seamwright

@@ -74,7 +74,7 @@ class Recomputer {
             m.part_id = part_id;
             m.capture = capture;
         }
-        std::vector<RegionRecord> regions = correct_regions(setup_, again.spots);
+        std::vector<RegionRecord> regions = correct_regions(setup_, again.spots, acting_drift(stored));
         for (std::size_t i = 0; i < regions.size(); ++i) {
             if (regions[i].correction)
                 regions[i].base_from_frame =

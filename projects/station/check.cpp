@@ -8,6 +8,7 @@
 #include "core/features/kinds/feature_registry.h"
 #include "devices/capture/capture.h"
 #include "devices/line/line_link.h"
+#include "projects/drift/drift_point.h"
 #include "projects/gate/safety_gate.h"
 #include "projects/measure/fields.h"
 #include "projects/measure/measure.h"
@@ -391,6 +392,8 @@ std::vector<Error> check(const Project& project) {
     check_ids(project.line, "line link", findings);
     for (const LineSetup& link : project.line) check_line(link, findings);
     check_types(project, findings);
+    if (project.drift)
+        if (auto sound = check_drift_watch(project, *project.drift); !sound) findings.add(sound.error());
     std::vector<Error> list;
     for (auto& [concern, error] : findings.list) list.push_back(std::move(error));
     return list;

@@ -8,6 +8,7 @@
 
 #include "devices/host_time.h"
 #include "devices/registry.h"
+#include "projects/drift/drift_keeper.h"
 #include "projects/file/file_use.h"
 #include "projects/gate/safety_gate.h"
 #include "projects/measure/measure.h"
@@ -39,6 +40,8 @@ struct Station::Impl {
     }
 
     bool writable = true;
+    DriftKeeper drift;
+    DriftStanding standing;
 
     Impl(ProjectFile f, Project p) : file(std::move(f)), project(std::move(p)) {}
 
@@ -54,7 +57,8 @@ struct Station::Impl {
         std::int64_t part_since_ns = 0;
         int done = 0, total = 0;
         StoredMeasurements stored{};
-        bool in_file = false;  // the judged run
+        std::optional<DriftStanding> drift{};  // of a project with a watch
+        bool in_file = false;                  // the judged run
 
         void event(EventKind kind, const std::string& subject, const Text& text) {
             run.events.push_back({0, utc_now(), 0, kind, subject, text});
@@ -238,10 +242,27 @@ struct Station::Impl {
                 request.frame_of_other_types.push_back(other);
         }
         for (const PanelJob& other : job.project.panel_jobs) request.other_frames.push_back(other.frame_name);
+        if (job.drift) request.drift_trouble = job.drift->trouble;
         request.calibration_age_days = job.project.requirements.calibration_age_days;
         request.now_utc = utc_now();
         request.now_ns = host_now_ns();
         return request;
+    }
+
+    // What the drift watch says of what was measured, before any of it is judged.
+    Expected<void> watch_drift(Job& job) {
+        SEAM_TRY(DriftTaken taken, drift.take(file, project, job.run));
+        standing = taken.standing;
+        if (!standing.watched) return {};
+        const DriftPoint* point = taken.point ? &*taken.point : nullptr;
+        if (taken.stopped_now)
+            job.event(EventKind::alarm, "drift watch", point->text);
+        else if (point && taken.worse)
+            job.event(EventKind::note, "drift watch", point->text);
+        if (standing.acting.compensated || !standing.acting.why.empty())
+            job.event(EventKind::note, "drift watch", said_of(standing.acting));
+        job.drift = std::move(taken.standing);
+        return {};
     }
 
     // Judges all regions before the first is pushed.
@@ -546,6 +567,10 @@ void Station::connect(std::map<std::string, std::unique_ptr<ProfileSource>> sens
     if (impl_->writable) resolve_release(impl_->file, impl_->links());
 }
 
+const DriftStanding& Station::drift() const {
+    return impl_->standing;
+}
+
 Expected<RunRecord> Station::run(const RunOptions& options) {
     Impl& i = *impl_;
     if (!i.connected)
@@ -594,7 +619,12 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
 
     auto measured = i.measure_all(job);
     const bool cancelled = options.cancel.stop_requested();
-    run.regions = correct_regions(job.project, run.spots);
+    if (measured && !cancelled)
+        if (auto watched = i.watch_drift(job); !watched) {
+            i.confirm_all(job, PartVerdict::failed);
+            return tl::unexpected(watched.error());
+        }
+    run.regions = correct_regions(job.project, run.spots, job.drift ? &job.drift->acting : nullptr);
     for (const RegionRecord& region : run.regions)
         if (region.offset) job.event(EventKind::note, region.region_id, said_of(*region.offset));
     std::vector<std::optional<GatePass>> passes;

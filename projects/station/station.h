@@ -23,6 +23,7 @@
 #include "core/text.h"
 #include "devices/capture/recorder.h"
 #include "devices/registry.h"
+#include "projects/drift/drift_standing.h"
 #include "projects/file/project_file.h"
 #include "projects/gate/release.h"
 #include "projects/station/acquire.h"
@@ -96,6 +97,8 @@ class Station {
     // Error: not connected, a part type that called_type() refuses, no enabled spot of it, a recipe that cannot be prepared, findings of check() that
     // concern motion, the file.
     Expected<RunRecord> run(const RunOptions& options);
+    // What the drift watch says after the last run of this station (projects/drift/drift_standing.h).
+    const DriftStanding& drift() const;
 
   private:
     struct Impl;

@@ -318,11 +318,14 @@ class Watch {
                                  : counts_.refused) += 1;
         state_ = WatchState::waiting;
         const auto done = std::make_shared<const RunRecord>(std::move(record));
-        tell(alarm || status == RunStatus::device ? WatchLevel::alarm
-             : status == RunStatus::ok            ? WatchLevel::info
-                                                  : WatchLevel::warning,
-             watched::RunDone{done, took.count()},
-             Text("{}: {}", named_part({done->part_id, done->type_id}), done->message));
+        const DriftStanding& drift = station_.drift();
+        Text said("{}: {}", named_part({done->part_id, done->type_id}), done->message);
+        // Of a run without regions the message knows nothing of it.
+        if (drift.stopped && done->regions.empty()) said = joined(said, "; ", drift.trouble);
+        tell(alarm || drift.stopped || status == RunStatus::device ? WatchLevel::alarm
+             : status == RunStatus::ok                             ? WatchLevel::info
+                                                                   : WatchLevel::warning,
+             watched::RunDone{done, took.count(), drift}, std::move(said));
         return forget_old_runs();
     }
 

@@ -55,6 +55,7 @@ struct SpotDone {
 struct RunDone {
     std::shared_ptr<const RunRecord> record;
     double seconds;
+    DriftStanding drift = {};  // after this run
 };
 struct Stopped {};
 }  // namespace watched

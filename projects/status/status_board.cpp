@@ -89,6 +89,7 @@ void StatusBoard::take(const WatchEvent& e) {
         view_.parts.push_back(part_of(*done, e.utc));
         if (view_.parts.size() > kStatusParts) view_.parts.pop_front();
         view_.measuring_seconds += done->seconds;
+        view_.drift = done->drift;
         ++view_.runs_by_status[view_.parts.back().status];
         view_.part.clear();
     }
@@ -110,7 +111,20 @@ StatusView StatusBoard::view() const {
 
 nlohmann::json status_json(const StatusView& v) {
     const WatchCounts& c = v.counts;
-    return {{"project", v.project},
+    nlohmann::json drift;
+    if (v.drift.watched)
+        drift = {{"verdict", to_string(v.drift.verdict)},
+                 {"text", v.drift.text.english()},
+                 {"stopped", v.drift.stopped},
+                 {"due", v.drift.due},
+                 {"points", v.drift.points},
+                 {"last_utc", v.drift.last_utc},
+                 {"level_mm", v.drift.level_mm},
+                 {"level_sigma_mm", v.drift.level_sigma_mm},
+                 {"compensated", v.drift.acting.compensated},
+                 {"shift_mm", vector_json(v.drift.acting.shift_mm)}};
+    return {{"drift", drift},
+            {"project", v.project},
             {"program", v.program},
             {"started_utc", v.started_utc},
             {"now_utc", v.now_utc},
@@ -177,6 +191,22 @@ std::string status_metrics(const StatusView& v) {
     for (const WatchState s : {WatchState::connecting, WatchState::waiting, WatchState::measuring,
                                WatchState::lost, WatchState::stopped})
         m.value(fmt::format("seamwright_state{{state=\"{}\"}}", to_string(s)), v.state == to_string(s));
+    if (v.drift.watched) {
+        m.head("seamwright_drift", "gauge", "1 for the verdict of the drift watch.");
+        for (const DriftVerdict d : {DriftVerdict::learning, DriftVerdict::fine, DriftVerdict::watch,
+                                     DriftVerdict::recalibrate, DriftVerdict::step})
+            m.value(fmt::format("seamwright_drift{{verdict=\"{}\"}}", to_string(d)), v.drift.verdict == d);
+        m.head("seamwright_drift_stopped", "gauge", "1 while a step is not acknowledged.");
+        m.value("seamwright_drift_stopped", v.drift.stopped);
+        m.head("seamwright_drift_due", "gauge", "1 while the reference should be measured.");
+        m.value("seamwright_drift_due", v.drift.due);
+        m.head("seamwright_drift_compensated_mm", "gauge", "What compensation takes off; 0: nothing.");
+        m.value("seamwright_drift_compensated_mm",
+                v.drift.acting.compensated ? v.drift.acting.shift_mm.norm() : 0);
+        m.head("seamwright_drift_level_mm", "gauge", "Off the learnt place, by direction of the watch.");
+        for (std::size_t d = 0; d < v.drift.level_mm.size(); ++d)
+            m.value(fmt::format("seamwright_drift_level_mm{{direction=\"{}\"}}", d), v.drift.level_mm[d]);
+    }
     if (v.parts.empty()) return m.text();
     m.head("seamwright_last_displacement_mm", "gauge", "Displacement of the last part that was solved.");
     for (const StatusRegion& r : v.parts.back().regions)

@@ -42,6 +42,7 @@ struct StatusView {
     std::deque<StatusAlarm> alarms;  // warnings and alarms, newest last, at most kStatusAlarms
     double measuring_seconds = 0;    // of all runs together
     std::map<std::string, std::int64_t> runs_by_status;
+    DriftStanding drift;  // after the last run
 };
 inline constexpr std::size_t kStatusParts = 300, kStatusAlarms = 100;
 

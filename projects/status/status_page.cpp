@@ -47,6 +47,15 @@ class PageWriter {
                      {std::to_string(c.parts), std::to_string(c.corrected), std::to_string(c.refused),
                       std::to_string(c.failed), std::to_string(c.alarms), std::to_string(c.lost),
                       std::to_string(c.missed), v_.started_utc.substr(0, 19)}});
+        if (v_.drift.watched) {
+            const DriftStanding& d = v_.drift;
+            const auto tone = d.stopped || !d.trouble.empty() || d.verdict == DriftVerdict::recalibrate
+                                  ? report::Tone::alarm
+                              : d.verdict == DriftVerdict::fine ? report::Tone::good
+                                                                : report::Tone::attention;
+            page_.verdict(t("Drift"), tone, (d.stopped ? d.trouble : said_of(d.acting)).in(language_));
+            if (d.due) page_.paragraph(t("The reference is due to be measured."));
+        }
         if (!v_.push) page_.paragraph(t("Dry run: nothing is written to a robot."));
         if (!v_.part.empty()) page_.paragraph(t("Part {}: spot {} of {}.", v_.part, v_.spots_done, v_.spots));
     }

@@ -235,6 +235,25 @@ inline Project sample_project(unsigned seed = 1) {
     bends.modes.message = Text("{} modes from {} parts", 1, 28);
     bends.learnt_from = {{7, "door 7", "2026-04-30T08:00:00.000Z"}};
     p.elastic = {bends};
+    DriftWatch& drift = p.drift.emplace();
+    drift.spot_ids = {"W1"};
+    drift.every_parts = 20;
+    drift.every_minutes = 45.5;
+    drift.limit_mm = 1.0 / 7;
+    drift.pause_minutes = 12.25;
+    drift.compensate = true;
+    drift.drifts = DriftOf::robot;
+    drift.most_mm = 0.4;
+    drift.switched_utc = "2026-06-01T10:00:00.000Z";
+    drift.learnt = LearntDrift{"2026-06-01T09:00:00.000Z",
+                               3,
+                               42,
+                               40,
+                               37,
+                               812.5,
+                               0xfedcba98u,
+                               {{"W1", 2, 0.1, 0.01, 0.03, -1.0 / 3}}};
+    drift.set_aside = {{43, 44, "2026-06-02T09:00:00.000Z", "Ada", "tightened"}};
     return p;
 }
 

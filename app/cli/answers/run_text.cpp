@@ -139,6 +139,11 @@ json run_json(const RunRecord& run) {
         if (r.offset)
             regions.back()["offset"] = {{"version", r.offset->version},
                                         {"offset_mm", vector_json(r.offset->offset_mm)}};
+        if (r.drift)
+            regions.back()["drift"] = {
+                {"verdict", to_string(r.drift->verdict)}, {"text", r.drift->text},
+                {"compensated", r.drift->compensated},    {"shift_mm", vector_json(r.drift->shift_mm)},
+                {"device", r.drift->device_id},           {"why", r.drift->why}};
     }
     for (const EventRecord& e : run.events)
         events.push_back(
@@ -181,6 +186,7 @@ std::string run_text(const RunRecord& run) {
                     correction_sigma_text(*r.correction);
         if (r.offset) text += "  " + said_of(*r.offset).english() + "\n";
         if (r.modes) text += "  " + said_of(*r.modes).english() + "\n";
+        if (r.drift) text += "  " + said_of(*r.drift).english() + "\n";
         for (const Text& reason : r.refusals) text += "  refused: " + reason.english() + "\n";
         if (run.push)
             text += fmt::format("  push of {}: {}{}{}\n", r.push.frame_name, to_string(r.push.status),

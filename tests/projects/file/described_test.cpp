@@ -27,7 +27,13 @@ MEMBERS(RegionCorrection, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
 MEMBERS(Feature, a, b, c, d, e, f, g, h)
 MEMBERS(SpotMeasurement, a, b, c, d, e, f, g, h, i, j)
 MEMBERS(PushRecord, a, b, c, d, e, f, g)
-MEMBERS(RegionRecord, a, b, c, d, e, f, g, h)
+MEMBERS(RegionRecord, a, b, c, d, e, f, g, h, i)
+MEMBERS(ActingDrift, a, b, c, d, e, f, g, h)
+MEMBERS(DriftWatch, a, b, c, d, e, f, g, h, i, j, k, l)
+MEMBERS(LearntDrift, a, b, c, d, e, f, g, h)
+MEMBERS(LearntDirection, a, b, c, d, e, f)
+MEMBERS(SetAside, a, b, c, d, e)
+MEMBERS(DriftPoint, a, b, c, d, e, f, g, h, i, j, k, l)
 MEMBERS(ActingModes, a, b, c, d, e, f, g)
 MEMBERS(RegionModes, a, b, c, d, e, f, g)
 MEMBERS(ElasticModes, a, b, c, d, e, f, g, h)
@@ -78,10 +84,12 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     region.correction->spots.resize(1);
     region.offset.emplace();
     region.modes.emplace();
+    region.drift.emplace();
     const auto r = to_json_document(region);
     whole(region, r);
     whole(*region.offset, r["offset"]);
     whole(*region.modes, r["modes"]);
+    whole(*region.drift, r["drift"]);
     whole(region.push, r["push"]);
     whole(*region.correction, r["correction"]);
     whole(region.correction->sigma_random, r["correction"]["sigma_random"]);
@@ -146,6 +154,15 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     whole(modes.modes.modes[0], m["modes"]["modes"][0]);
     whole(modes.learnt_from[0], m["learnt_from"][0]);
     whole(StudyPlan{}, to_json_document(StudyPlan{}));
+    DriftWatch drift;
+    drift.learnt.emplace().directions.resize(1);
+    drift.set_aside.resize(1);
+    const auto w = to_json_document(drift);
+    whole(drift, w);
+    whole(*drift.learnt, w["learnt"]);
+    whole(drift.learnt->directions[0], w["learnt"]["directions"][0]);
+    whole(drift.set_aside[0], w["set_aside"][0]);
+    whole(DriftPoint{}, to_json_document(DriftPoint{}));
     PanelJob job;
     job.places.resize(1);
     const auto j = to_json_document(job);

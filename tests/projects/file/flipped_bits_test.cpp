@@ -29,6 +29,12 @@ void make_full_file(const fs::path& path) {
     ASSERT_TRUE(file->append_run(panel, project));
     for (int kind = 0; kind < kSampleEvidence; ++kind)
         ASSERT_TRUE(file->append_evidence(sample_evidence(kind), project));
+    DriftPoint point;
+    point.run = 2;
+    point.utc = "2024-05-01T12:00:00.000Z";
+    point.values_mm = {1.0 / 3, -0.25};
+    point.sigma_mm = {0.1, 0.1};
+    ASSERT_TRUE(file->append_drift_point(point));
     ASSERT_TRUE(file->append_event({0, "2024-05-01T12:00:02.000Z", 0, EventKind::note, "desk", "a word"}));
 }
 
@@ -72,7 +78,9 @@ std::optional<std::string> all_of(const fs::path& path) {
     }
     const auto events = file->events();
     const auto evidence = file->evidence();
-    if (!events || !evidence) return std::nullopt;
+    const auto points = file->drift_points();
+    if (!events || !evidence || !points) return std::nullopt;
+    for (const DriftPoint& point : *points) all << exact_text(point);
     for (const EventRecord& event : *events)
         all << event.id << event.utc << event.run << to_string(event.kind) << event.subject << event.text;
     for (const Evidence& e : *evidence) {

@@ -726,6 +726,51 @@ TEST(Migration, SpotsOfOlderVersionsAreMeasuredAndTakeTheDrawing) {
     }
 }
 
+// A file of before watches nothing, takes a watch, and keeps its points when the runs are deleted.
+TEST(Migration, OlderVersionsTakeADriftWatch) {
+    for (int version = 1; version <= 9; ++version) {
+        TemporaryFolder folder;
+        const fs::path path = folder / "old.seam";
+        make_old_version(path, version);
+        auto file = ProjectFile::open(path);
+        ASSERT_TRUE(file) << version << file.error().sentence();
+        Project project = file->load().value();
+        EXPECT_FALSE(project.drift);
+        EXPECT_TRUE(file->drift_points()->empty());
+        const auto before = file->setup_of(project);
+        project.drift.emplace().spot_ids = {"W1"};
+        project.drift->set_aside = {{1, 2, "2026-06-02T09:00:00.000Z", "Ada", "it was loose"}};
+        ASSERT_TRUE(file->save(project));
+        EXPECT_EQ(*file->setup_of(project), *before) << "what acts is said by the run";
+        DriftPoint point;
+        point.run = 1;
+        point.values_mm = {1.0 / 3, -2};
+        point.sigma_mm = {0.1, 0.1};
+        point.mark = 0xfedcba98u;
+        point.text =
+            Text("a step of {:+.3f} mm in {}: sensor, robot or reference was knocked", 0.5, "X of W1");
+        for (int i = 1; i <= 3; ++i) EXPECT_EQ(*file->append_drift_point(point), i);
+        ASSERT_TRUE(file->delete_run(1));
+        const auto again = ProjectFile::open(path);
+        EXPECT_EQ(exact_text(*again->load()->drift), exact_text(*project.drift));
+        EXPECT_EQ(exact_text(**again->load_drift_watch()), exact_text(*project.drift));
+        const auto points = again->drift_points(2);
+        ASSERT_EQ(points->size(), 2u);
+        EXPECT_EQ(points->front().id, 2) << "the newest, oldest first";
+        EXPECT_EQ(points->front().values_mm, point.values_mm);
+        point.step = true;
+        ASSERT_TRUE(file->append_drift_point(point));
+        point.step = false;
+        ASSERT_TRUE(file->append_drift_point(point));
+        const auto last = again->drift_points(1);
+        ASSERT_EQ(last->size(), 2u) << "a step is never left out";
+        EXPECT_TRUE(last->front().step);
+        EXPECT_EQ(last->back().id, 5);
+        EXPECT_EQ(points->front().text.english(), point.text.english());
+        EXPECT_TRUE(again->check().empty());
+    }
+}
+
 TEST(ProjectFile, PanelRunsComeBackToTheLastBit) {
     TemporaryFolder folder;
     const Project project = sample_project();

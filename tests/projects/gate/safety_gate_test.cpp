@@ -221,6 +221,7 @@ std::vector<Refusal> refusals() {
         {"CollisionWithoutDate", [](R r) { r.spots[1].collided_utc = "soon"; }, "older than the collision"},
         {"NozzleTooUnsure", [](R r) { r.nozzle_sigma_mm = 0.2; }, "is over the region's limit"},
         {"NozzleNotKnown", [](R r) { r.nozzle_sigma_mm = -0.1; }, "sigma of the nozzle is not known"},
+        {"KnockedReference", [](R r) { r.drift_trouble = "stopped by a step"; }, "stopped by a step"},
         {"NozzleStale", [](R r) { r.nozzle_trouble = "nozzle is older"; }, "nozzle is older"},
         {"CalibrationWithoutDate", [](R r) { r.spots[1].calibrated_utc.clear(); }, "has no date"},
         {"CalibrationOfYesterday", [](R r) { r.spots[1].calibrated_utc = "yesterday"; }, "has no date"},

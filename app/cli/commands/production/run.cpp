@@ -89,6 +89,12 @@ struct HappeningJson {
                     {"seconds", run.seconds},
                     {"regions", std::move(regions)}};
         if (!run.record->type_id.empty()) out["type"] = run.record->type_id;
+        if (run.drift.watched)
+            out["drift"] = {{"verdict", to_string(run.drift.verdict)},
+                            {"text", run.drift.text},
+                            {"stopped", run.drift.stopped},
+                            {"due", run.drift.due},
+                            {"compensated", run.drift.acting.compensated}};
         return out;
     }
 };

@@ -57,6 +57,17 @@ struct RunSummary {
     std::int64_t setup = 0;  // runs with equal numbers were made with the same setup
 };
 
+// A scan of the part that is kept with the project; no part of a run's setup.
+struct StoredScan {
+    std::string name;                 // one of a kind in the file, at most kLongestId bytes
+    std::string utc;                  // when it was kept, ISO 8601; empty: now
+    std::string sensor_id, robot_id;  // empty: not known (a run's)
+    std::string path;                 // how it was made, for people: "spots T1, T2", "run 3"
+    std::int64_t profiles = 0, points = 0;
+    std::vector<std::byte> cloud_ply;  // binary PLY, millimetres, robot's base; not in a list
+};
+inline constexpr std::size_t kLargestScan = std::size_t{512} << 20;  // bytes of cloud_ply
+
 // The project a run is made with, as its record refers to it: made before the robot waits for it.
 class RunSetup {
   public:
@@ -144,6 +155,13 @@ class ProjectFile {
     Expected<std::optional<DriftWatch>> load_drift_watch() const;
     // The newest ones and, however old, those of a step, oldest first; 0 = all.
     Expected<std::vector<DriftPoint>> drift_points(std::int64_t newest = 0) const;
+
+    // Error (input): no name or one that is too long or in the file already, no cloud, one above kLargestScan.
+    Expected<void> append_scan(const StoredScan& scan);
+    Expected<std::vector<StoredScan>> scans() const;  // oldest first, without their clouds
+    // Error (input) where there is none of that name.
+    Expected<StoredScan> load_scan(const std::string& name) const;
+    Expected<void> delete_scan(const std::string& name);
 
     // The long check: SQLite's integrity_check, foreign keys, every row decoded, every blob's checksum. Empty
     // = sound.

@@ -239,7 +239,7 @@ CREATE TABLE elastic (
 )sql";
 
 // The drift watch and its points. A program that knew nothing of it would push after a step, and take nothing off where a
-// person has switched compensation on.
+// person has switched compensation on. Scans of the part: a cloud each, in the robot's base.
 constexpr const char* kVersion10 = R"sql(
 CREATE TABLE drift_watch (
     id TEXT PRIMARY KEY NOT NULL,
@@ -252,6 +252,18 @@ CREATE TABLE drift_points (
     run INTEGER NOT NULL,
     body TEXT NOT NULL,
     checksum INTEGER NOT NULL DEFAULT 0
+) STRICT;
+CREATE TABLE scans (
+    id INTEGER PRIMARY KEY AUTOINCREMENT,
+    name TEXT NOT NULL UNIQUE,
+    utc TEXT NOT NULL,
+    sensor_id TEXT NOT NULL,
+    robot_id TEXT NOT NULL,
+    path TEXT NOT NULL,
+    profiles INTEGER NOT NULL,
+    points INTEGER NOT NULL,
+    cloud BLOB NOT NULL,
+    checksum INTEGER NOT NULL
 ) STRICT;
 )sql";
 

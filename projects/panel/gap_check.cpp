@@ -7,89 +7,20 @@
 #include <optional>
 
 #include "projects/measure/measure.h"
+#include "projects/panel/pass_sections.h"
 #include "projects/station/acquire.h"
 
 namespace seamwright {
+
+using passing::pose_at;
+using passing::Sections;
+using passing::TimedPose;
+
 namespace {
 
 constexpr int kMostSteps = 100000;
 constexpr double kStillMm = 0.2;
-
-struct TimedPose {
-    std::int64_t time_ns;
-    Pose base_from_flange;
-};
-
-std::optional<Pose> pose_at(const std::vector<TimedPose>& poses, std::int64_t time_ns, double most_s) {
-    const auto after = std::lower_bound(poses.begin(), poses.end(), time_ns,
-                                        [](const TimedPose& p, std::int64_t t) { return p.time_ns < t; });
-    if (after == poses.end()) return std::nullopt;
-    if (after->time_ns == time_ns) return after->base_from_flange;
-    if (after == poses.begin()) return std::nullopt;
-    const auto before = std::prev(after);
-    const double between = 1e-9 * static_cast<double>(after->time_ns - before->time_ns);
-    if (between > most_s) return std::nullopt;
-    return interpolate(before->base_from_flange, after->base_from_flange,
-                       1e-9 * static_cast<double>(time_ns - before->time_ns) / between);
-}
-
-// One sensor's frames become sections.
-class Sections {
-  public:
-    static Expected<Sections> make(const Project& project, const std::string& sensor_id) {
-        const SensorSetup* sensor = find_sensor(project, sensor_id);
-        if (!sensor) return input_error(Text("the project has no sensor \"{}\"", sensor_id), project.name);
-        const Calibration* calibration = calibration_of(project, sensor_id);
-        if (!calibration)
-            return input_error(Text("sensor {} has no calibration", sensor_id), project.name,
-                               "calibrate it first");
-        Sections s;
-        s.sensor_ = *sensor;
-        s.calibration_ = *calibration;
-        s.workobject_from_base_ = project.part.base_from_workobject.inverse();
-        s.pass.sensor_id = sensor_id;
-        return s;
-    }
-    const Calibration& calibration() const { return calibration_; }
-
-    void add(const Frame& frame, const Pose& base_from_flange) {
-        Text message;
-        const auto status =
-            capture_frame(frame, sensor_.peaks, calibration_.model ? &*calibration_.model : nullptr, peaks_,
-                          capture_, message);
-        add(capture_, base_from_flange, status == SpotStatus::measured);
-    }
-    // An image that the capture kept is measured as on the day.
-    void add(const Capture& c, const Pose& base_from_flange) {
-        const auto& count = c.candidates.count;
-        const bool candidates = std::any_of(count.begin(), count.end(), [](auto n) { return n > 0; });
-        if (c.status == FrameStatus::ok && c.profile.size() == 0 && c.image) {
-            Frame frame;
-            frame.status = c.status;
-            frame.image = c.image->view();
-            return add(frame, base_from_flange);
-        }
-        add(c, base_from_flange, c.profile.size() > 0 || candidates);
-    }
-    GapPass pass;
-
-  private:
-    void add(const Capture& c, const Pose& base_from_flange, bool any) {
-        GapSection& s = pass.sections.emplace_back();
-        s.frame_from_sensor = workobject_from_base_ * base_from_flange * calibration_.flange_from_sensor;
-        if (c.status != FrameStatus::ok) {
-            ++pass.damaged;
-        } else if (!any || !track_capture(c, sensor_.filter, s.profile)) {
-            ++pass.without_profile;
-            s.profile.clear();
-        }
-    }
-    SensorSetup sensor_;
-    Calibration calibration_;
-    Pose workobject_from_base_;
-    StripePeaks peaks_;
-    Capture capture_;
-};
+constexpr double kStepRad = 0.035;  // where the sensor only turns
 
 // The poses of the flange along the spots, and the only sensor and robot that they have.
 struct Drive {
@@ -97,11 +28,42 @@ struct Drive {
     std::vector<Pose> base_from_flange;
 };
 
+// In steps from one stand to the next, as the sensor moves, not the flange: it turns about itself.
+Expected<std::vector<Pose>> in_steps(const std::vector<Pose>& stands, const Pose& flange_from_sensor,
+                                     double step_mm) {
+    std::vector<Pose> out{stands.front()};
+    const Pose sensor_from_flange = flange_from_sensor.inverse();
+    for (std::size_t k = 1; k < stands.size(); ++k) {
+        const Pose start = stands[k - 1] * flange_from_sensor, end = stands[k] * flange_from_sensor;
+        const double steps = std::max(std::ceil(distance_mm(start, end) / step_mm - 1e-9),
+                                      std::ceil(angle_rad(start, end) / kStepRad - 1e-9));
+        if (!(steps + static_cast<double>(out.size()) <= kMostSteps))
+            return usage_error(Text("more than {} profiles", kMostSteps), "step", "give a longer step");
+        for (int i = 1; i <= static_cast<int>(steps); ++i)
+            out.push_back(interpolate(start, end, i / steps) * sensor_from_flange);
+    }
+    return out;
+}
+
+// The poses of a path that the spots do not say.
+Expected<Drive> drive_along_stands(const Project& project, const DrivenGapPass& options) {
+    if (options.stands.size() < 2) return usage_error("a pass needs two poses or more to go along", "path");
+    for (std::size_t k = 0; k < options.stands.size(); ++k)
+        if (auto rigid = pose_from_matrix(options.stands[k].matrix(), Text("pose {} of the path", k + 1));
+            !rigid)
+            return tl::unexpected(rigid.error());
+    SEAM_TRY(auto pair, passing::devices_of(project, options.sensor_id, options.robot_id));
+    SEAM_TRY(auto poses, in_steps(options.stands, calibration_of(project, pair.sensor_id)->flange_from_sensor,
+                                  options.step_mm));
+    return Drive{pair.sensor_id, pair.robot_id, std::move(poses)};
+}
+
 Expected<Drive> drive_along(const Project& project, const DrivenGapPass& options) {
-    if (options.spot_ids.size() < 2)
-        return usage_error("a pass needs two spots or more to go along", "spots");
     if (!(options.step_mm >= 0.05) || !std::isfinite(options.step_mm))
         return usage_error(Text("a step of {} mm", options.step_mm), "step", "give 0.05 mm or more");
+    if (!options.stands.empty()) return drive_along_stands(project, options);
+    if (options.spot_ids.size() < 2)
+        return usage_error("a pass needs two spots or more to go along", "spots");
     std::vector<const Spot*> spots;
     for (const std::string& id : options.spot_ids) {
         const Spot* spot = find_spot(project, id);
@@ -116,19 +78,10 @@ Expected<Drive> drive_along(const Project& project, const DrivenGapPass& options
     if (!calibration)
         return input_error(Text("sensor {} has no calibration", spots[0]->sensor_id), project.name,
                            "calibrate it first");
-    Drive drive{spots[0]->sensor_id, spots[0]->robot_id, {spots[0]->base_from_flange}};
-    const Pose& mounting = calibration->flange_from_sensor;
-    for (std::size_t k = 1; k < spots.size(); ++k) {
-        // As the sensor moves, not the flange: it turns about itself.
-        const Pose start = spots[k - 1]->base_from_flange * mounting,
-                   end = spots[k]->base_from_flange * mounting;
-        const double steps = std::ceil(distance_mm(start, end) / options.step_mm - 1e-9);
-        if (!(steps + static_cast<double>(drive.base_from_flange.size()) <= kMostSteps))
-            return usage_error(Text("more than {} profiles", kMostSteps), "step", "give a longer step");
-        for (int i = 1; i <= static_cast<int>(steps); ++i)
-            drive.base_from_flange.push_back(interpolate(start, end, i / steps) * mounting.inverse());
-    }
-    return drive;
+    std::vector<Pose> stands;
+    for (const Spot* spot : spots) stands.push_back(spot->base_from_flange);
+    SEAM_TRY(auto poses, in_steps(stands, calibration->flange_from_sensor, options.step_mm));
+    return Drive{spots[0]->sensor_id, spots[0]->robot_id, std::move(poses)};
 }
 
 }  // namespace
@@ -176,8 +129,12 @@ Expected<GapPass> gap_pass(Station& station, const DrivenGapPass& options) {
     ProfileSource* sensor = station.sensor(drive.sensor_id);
     RobotLink* robot = station.robot(drive.robot_id);
     if (!sensor || !robot)
-        return usage_error("its sensor or robot is not connected", Text("spot {}", options.spot_ids[0]),
-                           "connect first");
+        return usage_error(Text("sensor {} or robot {} is not connected", drive.sensor_id, drive.robot_id),
+                           station.project().name, "connect first");
+    if (!robot->can_move())
+        return usage_error(Text("robot {} is not moved by this program", drive.robot_id),
+                           station.project().name,
+                           "let it move by its own program, or by hand, and follow it: scan --follow");
     SEAM_TRY(const auto by_software, SoftwareTriggered::begin(*sensor));
     StartedSensors started;
     SEAM_OK(started.start(*sensor));

@@ -7,6 +7,8 @@ namespace seamwright {
 ScanResult scan_of_pass(const Project& project, const GapPass& pass) {
     ScanResult scan;
     scan.without_pose = pass.without_pose;
+    scan.travel_sigma_mm = pass.travel_sigma_mm;
+    scan.sensor_id = pass.sensor_id;
     for (const GapSection& section : pass.sections) {
         const std::size_t before = scan.cloud.size();
         append_profile(scan.cloud, section.profile,

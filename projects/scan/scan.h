@@ -10,7 +10,9 @@ namespace seamwright {
 struct ScanResult {
     Cloud cloud;  // base
     std::uint64_t profiles = 0, without_profile = 0, without_pose = 0;
-    std::size_t outliers = 0;  // left out by clean()
+    std::size_t outliers = 0;    // left out by clean()
+    double travel_sigma_mm = 0;  // GapPass's
+    std::string sensor_id;       // empty: not known
 };
 
 // Of a pass along a path (recorded, or driven spot by spot: gap_pass).

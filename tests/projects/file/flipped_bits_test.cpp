@@ -36,6 +36,9 @@ void make_full_file(const fs::path& path) {
     point.sigma_mm = {0.1, 0.1};
     ASSERT_TRUE(file->append_drift_point(point));
     ASSERT_TRUE(file->append_event({0, "2024-05-01T12:00:02.000Z", 0, EventKind::note, "desk", "a word"}));
+    for (const char* name : {"first", "second"})
+        ASSERT_TRUE(file->append_scan({name, "2024-05-01T12:00:03.000Z", "A", "R1", "spots S1, S2", 12, 3400,
+                                       std::vector<std::byte>(300, std::byte{0x5a})}));
 }
 
 // Everything that a project file says, to the last bit; nullopt: it says that it is damaged.
@@ -86,6 +89,15 @@ std::optional<std::string> all_of(const fs::path& path) {
     for (const Evidence& e : *evidence) {
         all << e.id << e.utc << e.setup;
         std::visit([&](const auto& what) { all << exact_text(what); }, e.what);
+    }
+    const auto scans = file->scans();
+    if (!scans) return std::nullopt;
+    for (const StoredScan& s : *scans) {
+        const auto scan = file->load_scan(s.name);
+        if (!scan) return std::nullopt;
+        all << scan->name << scan->utc << scan->sensor_id << scan->robot_id << scan->path << scan->profiles
+            << ' ' << scan->points;
+        for (const std::byte b : scan->cloud_ply) all << static_cast<char>(b);
     }
     if (!file->check().empty()) return std::nullopt;
     return all.str();

@@ -1,4 +1,4 @@
-// seamwright scan, fit: a pass as a cloud, and the cloud on the drawing.
+// seamwright fit: a scan on the drawing.
 
 #include <fmt/format.h>
 
@@ -10,7 +10,6 @@
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "devices/exchange/tables/point_table.h"
 #include "devices/simulated/scene/mesh_file.h"
 #include "projects/scan/fit_report.h"
 #include "projects/scan/scan.h"
@@ -20,66 +19,6 @@ namespace seamwright::cli {
 namespace {
 
 using nlohmann::json;
-
-struct ScanArguments {
-    std::string file, capture, out;
-    std::int64_t run = 0;
-    RecordedGapPass recorded;
-    DrivenGapPass driven;
-    double cell_mm = 0;
-    bool keep_outliers = false;
-};
-
-Expected<ScanResult> scanned(ScanArguments& a) {
-    if (!a.driven.spot_ids.empty()) {
-        SEAM_TRY(auto station, Station::open(a.file));
-        SEAM_OK(station.connect());
-        a.driven.cancel = stop_on_signal();
-        a.driven.progress = [](const RunProgress& p) {
-            if (p.done == p.total || p.done % 50 == 0) fmt::print(stderr, "[{}/{}]\n", p.done, p.total);
-        };
-        SEAM_TRY(auto pass, gap_pass(station, a.driven));
-        return scan_of_pass(station.project(), pass);
-    }
-    SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
-    if (a.run > 0) return scan_of_run(file, a.run);
-    if (a.capture.empty())
-        return usage_error("there is nothing to make a scan of", a.file,
-                           "give --spots S1,S2 to drive along, --capture PASS.seam, or --run N");
-    SEAM_TRY(auto project, file.load());
-    SEAM_TRY(auto capture, CaptureReader::open(a.capture));
-    SEAM_TRY(auto pass, gap_pass(project, capture, a.recorded));
-    return scan_of_pass(project, pass);
-}
-
-Expected<Answer> scan_command(ScanArguments& a) {
-    SEAM_TRY(auto scan, scanned(a));
-    if (scan.cloud.empty())
-        return input_error("no profile of the pass has a point", a.file,
-                           "look at the sensor's picture on the way");
-    if (a.keep_outliers)
-        scan.cloud = a.cell_mm > 0 ? voxel_grid(scan.cloud, a.cell_mm) : std::move(scan.cloud);
-    else
-        clean(scan, a.cell_mm);
-    estimate_normals(scan.cloud);
-    SEAM_OK(write_cloud(a.out, scan.cloud, kInBaseMark));
-    const Eigen::AlignedBox3d box = scan.cloud.box();
-    const auto corner = [](const Eigen::Vector3d& v) { return json{v.x(), v.y(), v.z()}; };
-    Answer answer;
-    answer.json = {{"status", "ok"},
-                   {"out", a.out},
-                   {"frame", "base"},
-                   {"profiles", scan.profiles},
-                   {"without_profile", scan.without_profile},
-                   {"without_pose", scan.without_pose},
-                   {"points", scan.cloud.size()},
-                   {"outliers", scan.outliers},
-                   {"box", {{"from_mm", corner(box.min())}, {"to_mm", corner(box.max())}}}};
-    answer.text =
-        fmt::format("{} written: {} points of {} profiles in the robot's base, {} outliers left out\n", a.out,
-                    scan.cloud.size(), scan.profiles, scan.outliers);
-    return answer;
-}
 
 struct FitArguments {
     std::string file, scan, to = "drawing", cloud, mesh, start, pairs, unit, report, pdf, colours,
@@ -177,6 +116,21 @@ Expected<void> write_reports(const FitArguments& a, const FitReport& report, con
     return {};
 }
 
+// Of a project: the scan that it keeps by this name, else the file.
+Expected<Cloud> scan_cloud(const FitArguments& a, const std::string& source) {
+    if (!a.file.empty() && a.cloud.empty()) {
+        SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
+        SEAM_TRY(const auto scans, file.scans());
+        for (const StoredScan& s : scans) {
+            if (s.name != source) continue;
+            SEAM_TRY(const auto scan, file.load_scan(source));
+            return parse_cloud({reinterpret_cast<const char*>(scan.cloud_ply.data()), scan.cloud_ply.size()},
+                               a.file + ": " + source, "mm");
+        }
+    }
+    return read_cloud(source, a.unit);
+}
+
 Expected<Answer> fit_command(FitArguments& a) {
     if (a.to != "drawing")
         return usage_error(Text("a scan is fitted to the drawing, not to \"{}\"", a.to), "--to",
@@ -192,7 +146,7 @@ Expected<Answer> fit_command(FitArguments& a) {
     if (source.empty())
         return usage_error("there is nothing to fit", "fit", "give the scan: --scan SCAN.ply");
     SEAM_TRY(auto mesh, drawing(a));
-    SEAM_TRY(auto cloud, read_cloud(source, a.unit));
+    SEAM_TRY(auto cloud, scan_cloud(a, source));
     const Surface surface(mesh);
     const auto stop = stop_on_signal();
     a.options.cancelled = [stop] { return stop.stop_requested(); };
@@ -219,51 +173,7 @@ Expected<Answer> fit_command(FitArguments& a) {
     return answer;
 }
 
-void add_scan_options(CLI::App* command, const std::shared_ptr<ScanArguments>& a) {
-    command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
-    auto* spots =
-        command->add_option("--spots", a->driven.spot_ids, "Spots that the robot goes along, in order");
-    spots->delimiter(',')->type_name("S1,S2,...");
-    command->add_option("--step-mm", a->driven.step_mm, "Of the robot, from profile to profile")
-        ->check(CLI::Range(0.05, 100.0))
-        ->capture_default_str()
-        ->needs(spots);
-    auto* capture = command->add_option("--capture", a->capture, "A recorded pass: profiles and robot poses");
-    capture->type_name("PASS.seam")->excludes(spots);
-    command->add_option("--run", a->run, "The profiles of a stored run")
-        ->check(CLI::PositiveNumber)
-        ->excludes(spots)
-        ->excludes(capture);
-    command->add_option("--sensor", a->recorded.sensor_id, "Which one, when the capture has several")
-        ->needs(capture)
-        ->type_name("ID");
-    command->add_option("--robot", a->recorded.robot_id, "Whose poses, when the capture has several")
-        ->needs(capture)
-        ->type_name("ID");
-    command->add_option("--cell-mm", a->cell_mm, "One point a cell of this size; 0: every point")
-        ->check(CLI::Range(0.0, 1000.0))
-        ->capture_default_str();
-    command->add_flag("--keep-outliers", a->keep_outliers,
-                      "Without it points that stand far from all others are left out");
-    command->add_option("--out", a->out, "The cloud, in the robot's base")
-        ->required()
-        ->type_name("FILE.ply|.pcd|.csv");
-}
-
 }  // namespace
-
-void add_scan(CommandLine& line) {
-    auto a = std::make_shared<ScanArguments>();
-    CLI::App* command = line.add(
-        "scan",
-        "A cloud of points in the robot's base from a pass over the part: the robot goes from spot to spot, "
-        "step by step "
-        "(keep its\nway clear), or a recorded pass (`seamwright record`), or the profiles of a stored run.",
-        "seamwright scan door_left.seam --spots T1,T2,T3 --step-mm 2 --out door.ply\n"
-        "  seamwright scan door_left.seam --capture pass.seam --out door.pcd");
-    add_scan_options(command, a);
-    line.on(command, [a] { return scan_command(*a); });
-}
 
 void add_fit(CommandLine& line) {
     auto a = std::make_shared<FitArguments>();
@@ -276,8 +186,10 @@ void add_fit(CommandLine& line) {
                                  "seamwright fit --cloud scan.ply --mesh part.stl --report fit.html\n"
                                  "  seamwright fit door_left.seam --scan door.ply --to drawing --take");
     command->add_option("file", a->file, "The project")->type_name("FILE.seam");
-    command->add_option("--scan", a->scan, "The cloud, in the robot's base: PLY, PCD, CSV")
-        ->type_name("FILE");
+    command
+        ->add_option("--scan", a->scan,
+                     "One that the project keeps, or a cloud in the robot's base: PLY, PCD, CSV")
+        ->type_name("NAME|FILE");
     command->add_option("--cloud", a->cloud, "The same, without a project")->type_name("FILE");
     command
         ->add_option("--mesh", a->mesh,

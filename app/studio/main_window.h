@@ -17,6 +17,7 @@ namespace seamwright {
 class Studio;
 class StepPage;
 class RunPage;
+class ManualWindow;
 
 class MainWindow : public QMainWindow {
     Q_OBJECT
@@ -72,6 +73,7 @@ class MainWindow : public QMainWindow {
     void make_report();
     void mirror_project();
     void reteach();
+    void show_manual(const QString& page);
     bool save();
 
     Studio& studio_;
@@ -81,6 +83,7 @@ class MainWindow : public QMainWindow {
     StepRail* rail_ = nullptr;
     QStackedWidget* pages_ = nullptr;
     RunPage* run_page_ = nullptr;
+    ManualWindow* manual_ = nullptr;  // once it was asked for
     QPushButton* next_ = nullptr;
     QFrame* trouble_ = nullptr;
     QLabel* trouble_text_ = nullptr;

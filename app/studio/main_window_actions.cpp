@@ -4,6 +4,8 @@
 #include <QToolBar>
 #include <QToolButton>
 
+#include "app/manual/manual.h"
+#include "app/manual/manual_window.h"
 #include "app/studio/about.h"
 #include "app/studio/command_palette.h"
 #include "app/studio/main_window.h"
@@ -185,8 +187,24 @@ void MainWindow::make_view_menu() {
 
 void MainWindow::make_help_menu() {
     auto* help = menuBar()->addMenu(tr("&Help"));
+    help->addAction(action("manual", "", tr("Manual of this page"), QKeySequence::HelpContents,
+                           [this] { show_manual(manual_page_of(step_)); }));
+    auto* pages = help->addMenu(tr("Manual"));
+    for (const QString& page : manual_pages())
+        pages->addAction(action("manual_" + page, "",
+                                tr("Manual: %1").arg(manual_title(page, studio_.language())), {},
+                                [this, page] { show_manual(page); }));
+    help->addSeparator();
     help->addAction(in_bar_[3]);
     help->addAction(action("about", "", tr("About Seamwright"), {}, [this] { show_about(this); }));
+}
+
+void MainWindow::show_manual(const QString& page) {
+    if (!manual_) manual_ = new ManualWindow(studio_.language(), this);
+    manual_->show_page(page);
+    manual_->show();
+    manual_->raise();
+    manual_->activateWindow();
 }
 
 void MainWindow::make_bar() {

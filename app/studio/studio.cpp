@@ -31,6 +31,7 @@ Studio::Studio(QApplication& application, const StudioOptions& options)
     : application_(application), options_(options) {
     link_resources();
     application_.installEventFilter(&wheel_guard_);
+    application_.installEventFilter(&list_habits_);
     settings_ = options.settings.isEmpty()
                     ? std::make_unique<QSettings>(QStringLiteral("seamwright"), QStringLiteral("studio"))
                     : std::make_unique<QSettings>(options.settings, QSettings::IniFormat);

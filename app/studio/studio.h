@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "widgets/desk/desk.h"
+#include "widgets/editors/list_habits.h"
 #include "widgets/editors/wheel_guard.h"
 
 namespace seamwright {
@@ -52,6 +53,7 @@ class Studio : public QObject {
     StudioOptions options_;
     std::unique_ptr<QSettings> settings_;
     WheelGuard wheel_guard_;
+    ListHabits list_habits_;
     QTranslator texts_, qt_texts_;
     Desk desk_;
     std::unique_ptr<MainWindow> window_;

@@ -2806,6 +2806,13 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     </message>
 </context>
 <context>
+    <name>seamwright::ListHabits</name>
+    <message>
+        <source>Copy rows</source>
+        <translation>Zeilen kopieren</translation>
+    </message>
+</context>
+<context>
     <name>seamwright::MainWindow</name>
     <message>
         <source>autosaved %1</source>
@@ -3190,6 +3197,49 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>Jog</source>
         <translation>Verfahren</translation>
+    </message>
+    <message>
+        <source>Manual of this page</source>
+        <translation>Handbuch zu dieser Seite</translation>
+    </message>
+    <message>
+        <source>Manual</source>
+        <translation>Handbuch</translation>
+    </message>
+    <message>
+        <source>Manual: %1</source>
+        <translation>Handbuch: %1</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::ManualWindow</name>
+    <message>
+        <source>Manual</source>
+        <translation>Handbuch</translation>
+    </message>
+    <message>
+        <source>Search the manual</source>
+        <translation>Im Handbuch suchen</translation>
+    </message>
+    <message>
+        <source>Only the pages with these words stay in the list</source>
+        <translation>Nur die Seiten mit diesen Wörtern bleiben in der Liste</translation>
+    </message>
+    <message>
+        <source>Pages of the manual</source>
+        <translation>Seiten des Handbuchs</translation>
+    </message>
+    <message>
+        <source>The page</source>
+        <translation>Die Seite</translation>
+    </message>
+    <message>
+        <source>Back</source>
+        <translation>Zurück</translation>
+    </message>
+    <message>
+        <source>The page that was read before (Alt+Left)</source>
+        <translation>Die zuvor gelesene Seite (Alt+Links)</translation>
     </message>
 </context>
 <context>

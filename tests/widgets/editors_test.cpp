@@ -1,11 +1,17 @@
 #include <gtest/gtest.h>
 
 #include <QCheckBox>
+#include <QClipboard>
 #include <QComboBox>
+#include <QContextMenuEvent>
+#include <QHeaderView>
 #include <QLineEdit>
+#include <QMenu>
 #include <QSignalSpy>
+#include <QTableWidget>
 #include <QTest>
 
+#include "widgets/editors/list_habits.h"
 #include "widgets/editors/number_box.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
@@ -214,6 +220,66 @@ TEST_F(SettingsForm, ShowsWhatCounts) {
             EXPECT_EQ(editor.value(), json);
         }
     }
+}
+
+struct HabitsOfATable : testing::Test {
+    ListHabits habits;
+    QTableWidget table{3, 3};
+    QPushButton rename{"Rename"}, remove{"Remove"};
+    HabitsOfATable() {
+        qApp->installEventFilter(&habits);
+        for (int row = 0; row < 3; ++row)
+            for (int c = 0; c < 3; ++c)
+                table.setItem(row, c, new QTableWidgetItem(QString("%1%2").arg("abc"[row]).arg(c)));
+        table.setSelectionBehavior(QAbstractItemView::SelectRows);
+        table.setEditTriggers(QAbstractItemView::NoEditTriggers);
+        table.show();
+        QApplication::setActiveWindow(&table);
+        table.setFocus();
+    }
+};
+
+TEST_F(HabitsOfATable, CopyTakesTheChosenRowsInTheOrderOfTheScreen) {
+    EXPECT_TRUE(chosen_rows(table).isEmpty());
+    table.item(1, 1)->setText("two\nlines\tand a tab");
+    table.setColumnHidden(2, true);
+    table.selectionModel()->select(table.model()->index(2, 0),
+                                   QItemSelectionModel::Select | QItemSelectionModel::Rows);
+    table.selectionModel()->select(table.model()->index(1, 0),
+                                   QItemSelectionModel::Select | QItemSelectionModel::Rows);
+    QApplication::clipboard()->setText("before");
+    QTest::keyClick(&table, Qt::Key_C, Qt::ControlModifier);
+    EXPECT_EQ(QApplication::clipboard()->text(), "b0\ttwo lines and a tab\nc0\tc1");
+    table.clearSelection();
+    QTest::keyClick(&table, Qt::Key_C, Qt::ControlModifier);
+    EXPECT_EQ(QApplication::clipboard()->text(), "b0\ttwo lines and a tab\nc0\tc1")
+        << "nothing chosen, nothing lost";
+}
+
+TEST_F(HabitsOfATable, KeysAndMenuDoWhatTheButtonsDo) {
+    bool applies = true;
+    add_list_deed(table, rename, Qt::Key_F2, [&] { return applies; });
+    add_list_deed(table, remove, QKeySequence::Delete);
+    QSignalSpy renamed(&rename, &QPushButton::clicked), removed(&remove, &QPushButton::clicked);
+    QTest::keyClick(&table, Qt::Key_F2);
+    QTest::keyClick(&table, Qt::Key_Delete);
+    EXPECT_EQ(renamed.size(), 1);
+    EXPECT_EQ(removed.size(), 1);
+    remove.setEnabled(false);
+    applies = false;
+    QTest::keyClick(&table, Qt::Key_F2);
+    QTest::keyClick(&table, Qt::Key_Delete);
+    EXPECT_EQ(renamed.size(), 1) << "the deed does not apply";
+    EXPECT_EQ(removed.size(), 1) << "its button cannot be pressed";
+    QContextMenuEvent asked(QContextMenuEvent::Mouse, {20, 20},
+                            table.viewport()->mapToGlobal(QPoint(20, 20)));
+    QApplication::sendEvent(table.viewport(), &asked);
+    auto* menu = table.findChild<QMenu*>("list_menu");
+    ASSERT_TRUE(menu);
+    QStringList shown;
+    for (const QAction* a : menu->actions()) shown << a->text();
+    EXPECT_EQ(shown, (QStringList{"Rename", "Remove", "Copy rows"}));
+    menu->close();
 }
 
 }  // namespace

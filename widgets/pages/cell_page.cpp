@@ -11,6 +11,7 @@
 #include "devices/simulated/scene/random.h"
 #include "projects/measure/fields.h"
 #include "projects/measure/measure.h"
+#include "widgets/editors/list_habits.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
@@ -60,6 +61,8 @@ CellPage::CellPage(Desk& desk, const Views& views)
         if (isVisible()) offer_cameras(*found);
     });
     box().addLayout(make_row({search_, rename_, remove_}));
+    add_list_deed(*devices_, *rename_, Qt::Key_F2);
+    add_list_deed(*devices_, *remove_, QKeySequence::Delete);
     answers_ = make_text({});
     box().addWidget(answers_);
 

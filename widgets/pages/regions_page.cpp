@@ -9,6 +9,7 @@
 #include "projects/proof/budget_page.h"
 #include "projects/proof/forecast.h"
 #include "projects/proof/known_shift.h"
+#include "widgets/editors/list_habits.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
@@ -51,6 +52,8 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
                                               if (done(desk_.add(r))) desk_.selection().select_region(id);
                                           }),
                               rename_, remove_}));
+    add_list_deed(*list_, *rename_, Qt::Key_F2);
+    add_list_deed(*list_, *remove_, QKeySequence::Delete);
     inspector_ = new QWidget;
     auto* in = new QVBoxLayout(inspector_);
     in->setContentsMargins(0, 0, 0, 0);

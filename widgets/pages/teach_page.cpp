@@ -8,6 +8,7 @@
 #include "devices/registry.h"
 #include "projects/measure/fields.h"
 #include "projects/measure/measure.h"
+#include "widgets/editors/list_habits.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
@@ -95,6 +96,10 @@ void TeachPage::make_list() {
                               [this] { add_spot(); }),
                   duplicate_, rename_}));
     box().addLayout(make_row({up_, down_, remove_}));
+    const auto on_spot = [this] { return tree_->on_spot(); };
+    add_list_deed(*tree_, *rename_, Qt::Key_F2, on_spot);
+    add_list_deed(*tree_, *duplicate_, {}, on_spot);
+    add_list_deed(*tree_, *remove_, QKeySequence::Delete, on_spot);
 }
 
 void TeachPage::make_switches(QVBoxLayout& in) {

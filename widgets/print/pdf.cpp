@@ -1,21 +1,17 @@
 #include "widgets/print/pdf.h"
 
 #include <QAbstractTextDocumentLayout>
-#include <QBuffer>
-#include <QGuiApplication>
 #include <QPainter>
-#include <QPdfWriter>
 #include <QSvgRenderer>
 #include <QTextCursor>
 #include <QTextDocument>
 #include <QTextObjectInterface>
 #include <QTextOption>
 #include <QTextTable>
-#include <clocale>
 #include <cmath>
 #include <memory>
 
-#include "devices/exchange/files.h"
+#include "widgets/print/paged.h"
 
 namespace seamwright {
 namespace {
@@ -26,8 +22,6 @@ using report::Tone;
 constexpr int kPlotObject = QTextFormat::UserObject + 1;
 constexpr int kSvgProperty = QTextFormat::UserProperty + 1;
 constexpr int kWidthProperty = QTextFormat::UserProperty + 2;
-constexpr int kResolution = 300;
-constexpr double kMarginMm = 18, kFooterMm = 8;
 constexpr double kTextPt = 9, kTablePt = 8, kWideTablePt = 6.5;
 constexpr double kNoHeightPt = 1;
 constexpr int kShortTable = 12;  // rows
@@ -319,71 +313,21 @@ class PageBreaks {
     double page_px_;
 };
 
-void ensure_application() {
-    if (QCoreApplication::instance()) return;
-    qputenv("QT_QPA_PLATFORM", "offscreen");
-    static int argc = 1;
-    static char name[] = "seamwright";
-    static char* argv[] = {name, nullptr};
-    // Offscreen, Qt has something to say about a desktop session that nobody needs here.
-    const QtMessageHandler before =
-        qInstallMessageHandler([](QtMsgType, const QMessageLogContext&, const QString&) {});
-    static QGuiApplication application(argc, argv);
-    std::setlocale(LC_NUMERIC, "C");  // Qt has set the desktop's: libraries that parse "1.5" would read 1
-    qInstallMessageHandler(before);
-}
-
 }  // namespace
 
 Expected<void> write_pdf(const report::Page& page, const std::filesystem::path& path) {
-    ensure_application();
-    QBuffer buffer;
-    buffer.open(QIODevice::WriteOnly);
-    {
-        QPdfWriter writer(&buffer);
-        writer.setPageSize(QPageSize(QPageSize::A4));
-        writer.setPageMargins(QMarginsF(kMarginMm, kMarginMm, kMarginMm, kMarginMm), QPageLayout::Millimeter);
-        writer.setResolution(kResolution);
-        writer.setTitle(q(page.title()));
-        writer.setCreator("Seamwright");
-        const double width = writer.width();
-        const double footer = kFooterMm * kResolution / 25.4, height = writer.height() - footer;
-
-        QTextDocument document;
+    PlotObject plots;
+    return write_paged(path, q(page.title()), [&](QTextDocument& document, QSizeF page_px) {
         document.setDocumentMargin(0);
-        QTextOption wrapping;
-        wrapping.setWrapMode(QTextOption::WordWrap);
-        document.setDefaultTextOption(wrapping);
         document.setDefaultFont(QFont("DejaVu Sans", static_cast<int>(kTextPt)));
-        document.documentLayout()->setPaintDevice(&writer);
-        PlotObject plots;
         document.documentLayout()->registerHandler(kPlotObject, &plots);
-        document.setPageSize(QSizeF(width, height));
         {
-            Builder builder(document, width);
+            Builder builder(document, page_px.width());
             builder.heading(q(page.title()), 1);
             for (const Block& b : page.blocks()) builder.add(b);
         }
-        PageBreaks(document, height).set();
-
-        QPainter painter(&writer);
-        const int pages = document.pageCount();
-        for (int n = 0; n < pages; ++n) {
-            if (n) writer.newPage();
-            painter.save();
-            painter.translate(0, -n * height);
-            document.drawContents(&painter, QRectF(0, n * height, width, height));
-            painter.restore();
-            painter.setFont(QFont("DejaVu Sans", 7));
-            painter.setPen(QColor("#6b7280"));
-            const QRectF foot(0, height, width, footer);
-            painter.drawText(foot, Qt::AlignLeft | Qt::AlignBottom, q(page.title()));
-            painter.drawText(foot, Qt::AlignRight | Qt::AlignBottom,
-                             QString("%1 / %2").arg(n + 1).arg(pages));
-        }
-    }
-    const QByteArray& bytes = buffer.data();
-    return write_text_file(path, std::string_view(bytes.constData(), static_cast<std::size_t>(bytes.size())));
+        PageBreaks(document, page_px.height()).set();
+    });
 }
 
 }  // namespace seamwright

@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "app/manual/manual_window.h"
 #include "app/studio/command_palette.h"
 #include "app/studio/studio.h"
 #include "devices/simulated/cell.h"
@@ -430,6 +431,30 @@ TEST_F(Furniture, ARegionOfInterestIsDraggedOnTheCameraImage) {
     Person me(window());
     EXPECT_TRUE(me.text_of("trouble_text").contains("part of its image"))
         << "no sensor is connected that could";
+}
+
+TEST_F(Furniture, F1OpensTheManualAtTheStep) {
+    window().show_step(Step::teach);
+    QTest::keyClick(&window(), Qt::Key_F1);
+    auto* manual = window().findChild<ManualWindow*>();
+    ASSERT_TRUE(manual);
+    EXPECT_TRUE(manual->isVisible());
+    EXPECT_EQ(manual->page(), "teach");
+    auto* words = manual->findChild<QLineEdit*>("manual_words");
+    auto* contents = manual->findChild<QListWidget*>("manual_contents");
+    words->setText("Modbus");
+    int left = 0;
+    for (int k = 0; k < contents->count(); ++k) left += contents->item(k)->isHidden() ? 0 : 1;
+    EXPECT_EQ(left, 1);
+    EXPECT_EQ(manual->page(), "production") << "the page with the words is shown";
+    manual->grab().save(QString(SEAMWRIGHT_SCREENS) + "/manual.png");
+    words->clear();
+    manual->findChild<QPushButton*>("manual_back")->click();
+    EXPECT_EQ(manual->page(), "teach");
+    window().activateWindow();
+    window().show_step(Step::run);
+    QTest::keyClick(&window(), Qt::Key_F1);
+    EXPECT_EQ(manual->page(), "run");
 }
 
 }  // namespace

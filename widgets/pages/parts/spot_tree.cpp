@@ -38,6 +38,10 @@ SpotTree::SpotTree(Desk& desk, QWidget* parent) : QTreeWidget(parent), desk_(des
         Qt::QueuedConnection);
 }
 
+bool SpotTree::on_spot() const {
+    return currentItem() && currentItem()->data(0, kKind).toString() == "spot";
+}
+
 void SpotTree::refresh() {
     filling_ = true;
     const QTreeWidgetItem* before = currentItem();

@@ -12,6 +12,7 @@ class SpotTree : public QTreeWidget {
   public:
     explicit SpotTree(Desk& desk, QWidget* parent = nullptr);
     void refresh();
+    bool on_spot() const;  // the marked row is a spot's
 
   private:
     Desk& desk_;

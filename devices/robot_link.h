@@ -30,6 +30,9 @@ enum class RobotMode {
 std::string_view to_string(RobotMode mode);
 std::optional<RobotMode> robot_mode_from_string(std::string_view name);
 
+// Enough for one exposure.
+inline constexpr double kStand_s = 0.1;
+
 // One linear pass over a spot: entry -> trigger -> exit, sensor's Y along the travel. Poses are
 // base_from_flange.
 struct MeasuringMove {
@@ -38,6 +41,7 @@ struct MeasuringMove {
     Pose entry = Pose::Identity(), trigger = Pose::Identity(), exit = Pose::Identity();
     double speed_mm_s = 100;
     bool stop_at_trigger = false;  // measure standing still
+    double stand_s = kStand_s;     // how long it stands after the trigger, where it does
 };
 
 // The robot fired the trigger for a spot. `base_from_flange` is what the controller reports, not necessarily

@@ -25,6 +25,7 @@ std::string program_signature(const std::vector<MeasuringMove>& moves) {
             for (int i = 0; i < 9; ++i)
                 add(fmt::format("{}", std::llround(pose->linear().data()[i] / 1.7e-6)));
         }
+        if (move.stand_s != kStand_s) add(fmt::format("stands {:.2f}", move.stand_s));
     }
     return fmt::format("SW-{:016X}", hash);
 }

@@ -64,6 +64,7 @@ void add_confirm(CommandLine& line);
 void add_run(CommandLine& line);
 void add_service(CommandLine& line);
 void add_record(CommandLine& line);
+void add_expose(CommandLine& line);
 void add_proof(CommandLine& line);  // zero-shift, known-shift
 void add_budget(CommandLine& line);
 void add_collision(CommandLine& line);

@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
     add_run(line);
     add_service(line);
     add_record(line);
+    add_expose(line);
     add_proof(line);
     add_budget(line);
     add_hand_over(line);

@@ -193,6 +193,8 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
             passes += fmt::format("        SW_Via {};\n", via);
         }
         names += fmt::format("{}\"{}\"", n == 1 ? "" : n % 4 == 1 ? ",\n        " : ",", move.spot_id);
+        if (move.stop_at_trigger && move.stand_s != kStand_s)
+            passes += fmt::format("        swStand:={:.3g};\n", move.stand_s);
         passes += fmt::format("        SW_Pass {},{}_entry,{}_spot,{}_exit,{}_speed,{};\n", n, point, point,
                               point, point, move.stop_at_trigger ? "TRUE" : "FALSE");
     }

@@ -112,8 +112,8 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
         if (move.stop_at_trigger)
             path += fmt::format(
                 "LIN {0}_SPOT\nWAIT SEC 0.3\nPULSE($OUT[SW_TRIGGER_OUT],TRUE,0.02)\n"
-                "SW_FIRE({1},{0}_SPOT)\nWAIT SEC 0.1\n",
-                point, n);
+                "SW_FIRE({1},{0}_SPOT)\nWAIT SEC {2:.3g}\n",
+                point, n, move.stand_s);
         else
             path += fmt::format(
                 "TRIGGER WHEN PATH=0 DELAY=0 DO PULSE($OUT[SW_TRIGGER_OUT],TRUE,0.02)\n"

@@ -10,7 +10,7 @@ constexpr const char* kHandshake = R"(## Start, busy, done
 
 Setting "start": "line". The line starts the parts.
 
-1. The line writes part_type, part_number and part_name, then start 1. With one write of all of them, or start last.
+1. The line writes part_type, paint, part_number and part_name, then start 1. With one write of all of them, or start last.
 2. The station answers busy 1.
 3. The station answers busy 0 and done 1: result, alarm, run and regions are of this part.
 4. The line writes start 0. The station answers done 0, and ready 1 where the next part may come.
@@ -20,8 +20,8 @@ A start that is 1 when the station begins, when the connection comes back or aft
 end, but no robot is waited for any longer; done stays until the next start. A call that the station cannot follow in
 call_timeout_ms ends with done 1, result 8 and alarm 30.
 
-Setting "start": "robot" (where nothing is set). The robot's call starts the part; what stands in part_type, part_number and
-part_name at that instant goes with it. start is not looked at; busy and done follow the station.
+Setting "start": "robot" (where nothing is set). The robot's call starts the part; what stands in part_type, paint,
+part_number and part_name at that instant goes with it. start is not looked at; busy and done follow the station.
 
 Nothing that a line writes reaches a robot. It names a part and calls for it; the safety gate judges as ever.
 )";
@@ -46,8 +46,8 @@ QoS 1, JSON, topics after Sparkplug's pattern. GROUP and NODE are settings; '/',
 | topic | kept by the broker | |
 |---|---|---|
 | `seamwright/GROUP/STATE/NODE` | yes | `{"version":1,"online":true,"utc","state":"ready"\|"busy"\|"not_ready","part","parts","alarm","text"}`; the last will is `{"version":1,"online":false}` |
-| `seamwright/GROUP/NDATA/NODE` | yes | `{"version":1,"utc","part","part_type","part_number","part_name","run","result","alarm","seconds","text","regions":[{"id","passed","refusal","shift_mm":[x,y,z],"shift_abc_deg":[a,b,c],"sigma_mm":[x,y,z],"sigma_abc_deg":[a,b,c]}]}`; shifts are null where nothing was solved |
-| `seamwright/GROUP/NCMD/NODE` | no | to the station: `{"id":"7","start":true,"part_type":1,"part_number":815,"part_name":"CAR-0815"}` |
+| `seamwright/GROUP/NDATA/NODE` | yes | `{"version":1,"utc","part","part_type","paint","part_number","part_name","run","result","alarm","seconds","text","regions":[{"id","passed","refusal","shift_mm":[x,y,z],"shift_abc_deg":[a,b,c],"sigma_mm":[x,y,z],"sigma_abc_deg":[a,b,c]}]}`; shifts are null where nothing was solved |
+| `seamwright/GROUP/NCMD/NODE` | no | to the station: `{"id":"7","start":true,"part_type":1,"paint":3,"part_number":815,"part_name":"CAR-0815"}` |
 
 A command's "id" is another one each time: the same one again is a repetition and does nothing. Kept (retained) commands are not
 obeyed. "start": true calls for a part where the setting "start" is "line", false gives it up; without "start" the part is

@@ -60,11 +60,12 @@ struct LineCode {
 const std::vector<LineCode>& line_alarms();
 const std::vector<LineCode>& line_results();
 
-// The part that a line speaks of. All may be absent: 0, 0, "".
+// The part that a line speaks of. All may be absent: 0, 0, 0, "".
 struct LinePart {
     std::uint16_t type = 0;
     std::uint32_t number = 0;
     std::string name;  // printable, at most kLongestLineName bytes
+    std::uint16_t paint = 0;  // colour, as the line numbers them
     bool operator==(const LinePart&) const = default;
     // The name, else the number, else "".
     std::string id() const;

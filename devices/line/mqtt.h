@@ -3,7 +3,7 @@
 //
 //   seamwright/GROUP/STATE/NODE  retained: what the station does; {"online":false} is its last will
 //   seamwright/GROUP/NDATA/NODE  retained: a part's result, one message a part
-//   seamwright/GROUP/NCMD/NODE   to the station: {"id":"7","start":true,"part_type":1,"part_number":815,"part_name":"CAR"}
+//   seamwright/GROUP/NCMD/NODE   to the station: {"id":"7","start":true,"part_type":1,"paint":3,"part_number":815,"part_name":"CAR"}
 //
 // NCMD. "id" is the sender's and another one each time: the same one again is a repetition of QoS 1 and does nothing.
 // Retained commands are not obeyed. "start" true calls for the part (setting start: line), false gives it up; without

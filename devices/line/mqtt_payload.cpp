@@ -71,6 +71,7 @@ json mqtt_result(const LineState& s) {
             {"utc", s.utc},
             {"part", s.part_id},
             {"part_type", s.part.type},
+            {"paint", s.part.paint},
             {"part_number", s.part.number},
             {"part_name", s.part.name},
             {"run", s.run},
@@ -84,7 +85,7 @@ json mqtt_result(const LineState& s) {
 Expected<MqttCommand> read_mqtt_command(std::string_view payload) {
     if (payload.size() > 4096) return input_error("a command of over 4096 bytes");
     SEAM_TRY(const json object, parse_json(payload, ""));
-    SEAM_OK(only_fields(object, {"id", "start", "part_type", "part_number", "part_name"}, ""));
+    SEAM_OK(only_fields(object, {"id", "start", "part_type", "paint", "part_number", "part_name"}, ""));
     MqttCommand command;
     SEAM_TRY(command.id, json_string(object, "id", ""));
     if (command.id.empty() || command.id.size() > 64) return input_error("must have 1 to 64 signs", "id");
@@ -93,6 +94,7 @@ Expected<MqttCommand> read_mqtt_command(std::string_view payload) {
         command.start = start;
     }
     SEAM_OK(read_whole(object, "part_type", command.part.type));
+    SEAM_OK(read_whole(object, "paint", command.part.paint));
     SEAM_OK(read_whole(object, "part_number", command.part.number));
     SEAM_TRY(const std::string name, json_string_or(object, "part_name", "", ""));
     command.part.name = line_name(name);

@@ -69,6 +69,7 @@ const std::vector<LineRegister>& line_registers() {
          "counts on while the line lives; watched where heartbeat_timeout_ms is set"},
         {1, 1, uint16, "start", "1: measure the part; held until done, then 0. Anything but 0 is 1"},
         {2, 1, uint16, "part_type", "0: not said"},
+        {3, 1, uint16, "paint", "the colour's number, as the spots' paints are named; 0: not said"},
         {4, 2, uint32, "part_number", "0: not said"},
         {6, 16, text, "part_name", "the run's name; all 0: the part number is"},
         {100, 1, uint16, "protocol_version", "of this table",
@@ -149,6 +150,7 @@ LineWords read_line_words(std::span<const std::uint16_t> words) {
     line.heartbeat = static_cast<std::uint16_t>(number("line_heartbeat"));
     line.start = number("start") != 0;
     line.part.type = static_cast<std::uint16_t>(number("part_type"));
+    line.part.paint = static_cast<std::uint16_t>(number("paint"));
     line.part.number = number("part_number");
     const LineRegister& name = line_register("part_name");
     std::string text;

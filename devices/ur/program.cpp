@@ -90,6 +90,8 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
                 fmt::format("    movel({}, a=1.2, v=sw_travel, r={:.5f})\n", script_pose(at), blend / 1000);
             last = &at;
         }
+        if (move.stop_at_trigger && move.stand_s != kStand_s)
+            passes += fmt::format("    sw_stand = {:.3g}\n", move.stand_s);
         // The speed is kept over the spot.
         passes += fmt::format("    sw_pass({}, {}, {}, {}, {:.4f}, {:.5f}, {})\n", ++n,
                               script_pose(move.entry), script_pose(move.trigger), script_pose(move.exit),

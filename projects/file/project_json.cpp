@@ -317,6 +317,27 @@ void describe(A& a, DrawingOrigin& v) {
     a("reference_mm", v.reference_mm);
 }
 template <class A>
+void describe(A& a, SeenLight& v) {
+    a("settings", v.settings);
+    a("bright", v.bright);
+    a("saturated_share", v.saturated_share);
+    a("width_px", v.width_px);
+    a("exposures", v.exposures);
+}
+template <class A>
+void describe(A& a, PaintLight& v) {
+    a("paint", v.paint);
+    a("settings", v.settings);
+}
+template <class A>
+void describe(A& a, SpotLight& v) {
+    a("settings", v.settings);
+    a("merge_us", v.merge_us);
+    a("shortest_us", v.shortest_us);
+    a("longest_us", v.longest_us);
+    a("paints", v.paints);
+}
+template <class A>
 void describe(A& a, Spot& v) {
     a("id", v.id);
     // Absent where there is none, so that a setup of before is the same setup.
@@ -337,6 +358,8 @@ void describe(A& a, Spot& v) {
     // Absent where they say nothing, so that a setup of before is the same setup.
     if (A::reading || v.reference_state != ReferenceState::measured) a("reference_state", v.reference_state);
     if (A::reading || v.drawn) a("drawn", v.drawn);
+    if (A::reading || v.reference_light) a("reference_light", v.reference_light);
+    if (A::reading || !v.light.empty()) a("light", v.light);
     if (a.options().profiles) a("reference_profile", v.reference_profile);
     a("weights", v.weights);
     a("sigma_mm", v.sigma_mm);
@@ -607,6 +630,7 @@ void describe(A& a, SpotMeasurement& v) {
     a("part_id", v.part_id);
     a("host_time_ns", v.host_time_ns);
     a("capture", v.capture);
+    if (A::reading || v.light) a("light", v.light);
 }
 template <class A>
 void describe(A& a, PushRecord& v) {

@@ -151,7 +151,7 @@ Expected<NamedPart> LineControl::named(const std::string& part_id) {
         return input_error(Text("its type {} is none that is measured here", part.type),
                            Text("line {}", speaker->setup.id), "name it in the link's part_types");
     }
-    return NamedPart{state_.part_id, part.type};
+    return NamedPart{state_.part_id, part.type, part.paint};
 }
 
 void LineControl::take(const WatchEvent& e) {

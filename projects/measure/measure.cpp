@@ -307,6 +307,41 @@ const SpotMeasurement& SpotMeasurer::measure(const Frame& frame, const std::opti
     return i.evaluate(i.capture);
 }
 
+const SpotMeasurement& SpotMeasurer::measure(std::span<const FramePtr> exposures,
+                                             std::span<const double> light,
+                                             const std::optional<Pose>& reported) {
+    Impl& i = *impl_;
+    if (exposures.size() == 1) return measure(*exposures.front(), reported);
+    i.reset(exposures.empty() ? 0 : exposures.front()->host_time_ns);
+    i.capture.profile.clear();
+    clear_candidates(i.capture.candidates);
+    std::vector<StripePeaks> peaks(exposures.size());
+    int full_scale = 0;
+    for (std::size_t k = exposures.size(); k-- > 0;) {  // the first one's times and pose stay
+        const Frame& frame = *exposures[k];
+        if (frame.profile.size() > 0)
+            return i.no(SpotStatus::no_stripe, "exposures are merged from images, the sensor sends profiles");
+        if (full_scale != 0 && !frame.image.empty() && full_scale != frame.image.full_scale())
+            return i.no(SpotStatus::damaged_frame, "the exposures differ in their grey values' depth");
+        const SpotStatus status = capture_frame(frame, i.peak_options, i.model ? &*i.model : nullptr,
+                                                peaks[k], i.capture, i.measurement.message);
+        // A single exposure may show nothing; all of them together are asked.
+        if (status == SpotStatus::damaged_frame || status == SpotStatus::no_calibration ||
+            frame.image.empty())
+            return i.no(status, i.measurement.message);
+        full_scale = frame.image.full_scale();
+    }
+    if (reported) i.capture.base_from_flange = reported;
+    i.measurement.message.clear();
+    if (auto merged = merge_exposures(peaks, light, full_scale, i.peaks); !merged)
+        return i.no(SpotStatus::no_stripe, merged.error().text());
+    to_millimetres(i.peaks, *i.model, i.capture.candidates);
+    const auto& count = i.capture.candidates.count;
+    if (std::none_of(count.begin(), count.end(), [](std::uint8_t n) { return n > 0; }))
+        return i.no(SpotStatus::no_stripe, "no stripe was found in any of the exposures");
+    return i.evaluate(i.capture);
+}
+
 const SpotMeasurement& SpotMeasurer::measure(const Capture& stored) {
     Impl& i = *impl_;
     if (stored.image && stored.status == FrameStatus::ok && stored.profile.size() == 0) {

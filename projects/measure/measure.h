@@ -80,6 +80,10 @@ class SpotMeasurer {
     // The whole way. The reference stays valid until the next call. `reported` (the trigger event's pose) is
     // preferred to the frame's own.
     const SpotMeasurement& measure(const Frame& frame, const std::optional<Pose>& reported = std::nullopt);
+    // Several exposures of a scene and a robot that stood still, merged into one stripe (merge_exposures()); `light`: of each
+    // frame, exposure times gain. Images alone, all of one size. The pose and the times are the first frame's.
+    const SpotMeasurement& measure(std::span<const FramePtr> exposures, std::span<const double> light,
+                                   const std::optional<Pose>& reported = std::nullopt);
     // From a stored capture: from the image where it was kept, else from candidates or profile. Same code,
     // same bits.
     const SpotMeasurement& measure(const Capture& capture);

@@ -19,9 +19,11 @@
 #include "core/correction/correction.h"
 #include "core/features/feature.h"
 #include "core/geometry/pose.h"
+#include "core/parameter.h"
 #include "core/profile/filter.h"
 #include "core/profile/sensor_model.h"
 #include "core/profile/stripe/peaks.h"
+#include "core/profile/stripe/stripe_light.h"
 #include "core/text.h"
 #include "devices/profile_source.h"
 #include "devices/robot_link.h"
@@ -122,6 +124,28 @@ struct DrawingOrigin {
     Eigen::Vector3d reference_mm = Eigen::Vector3d::Zero();  // as drawn, sensor frame
 };
 
+// On a colour of paint that the line or `run --paint` names, a spot's own settings with these in their place.
+struct PaintLight {
+    std::string paint;         // "white", or the line's number
+    ParameterValues settings;  // as in SpotLight
+    bool operator==(const PaintLight&) const = default;
+};
+
+// What the sensor is set to while it cuts a spot (projects/station/spot_light.h). Empty: it stands as it does at its start.
+struct SpotLight {
+    // By the device's own names (ProfileSource::parameters()): "exposure_us", "gain_db", ... What is not named stands as
+    // at the sensor's start.
+    ParameterValues settings;
+    // Exposures of the standing robot that are merged into one stripe line by line, ascending; empty: one exposure.
+    std::vector<double> merge_us;
+    // At run time the exposure follows the paint between these; 0, 0: it stays as set.
+    double shortest_us = 0, longest_us = 0;
+    std::vector<PaintLight> paints;
+    bool follows_paint() const { return longest_us > 0; }
+    bool empty() const { return settings.empty() && merge_us.empty() && !follows_paint() && paints.empty(); }
+    bool operator==(const SpotLight&) const = default;
+};
+
 struct Spot {
     std::string id;       // "S1", one of a kind in the project, whatever its type
     std::string type_id;  // the part type; empty: of a project without types
@@ -140,6 +164,8 @@ struct Spot {
     int reference_arrivals = 1;                              // of the robot, that reference_mm is the mean of
     Profile reference_profile;
     ReferenceState reference_state = ReferenceState::measured;
+    std::optional<SeenLight> reference_light;  // that it was measured with; absent: nobody looked
+    SpotLight light;
     std::optional<DrawingOrigin> drawn;
     Eigen::Vector3d weights = {1, 0, 1};
     double sigma_mm = 0.05;

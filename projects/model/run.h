@@ -13,6 +13,7 @@
 #include "core/features/feature.h"
 #include "core/panel/panel_fit.h"
 #include "core/profile/profile.h"
+#include "core/profile/stripe/stripe_light.h"
 #include "core/text.h"
 #include "devices/capture/capture.h"
 #include "projects/model/drift_watch.h"
@@ -36,11 +37,12 @@ struct SpotMeasurement {
     Text message;                                           // empty when measured, else why, in plain words
     Feature feature;                                        // sensor frame at the pose of the exposure
     Eigen::Vector3d measured_mm = Eigen::Vector3d::Zero();  // in the taught sensor frame, see measure.h
-    double sigma_mm = 0;            // of an observed coordinate: spot's own and the feature's
-    bool pose_reported = false;     // false: taught pose taken
-    std::string part_id;            // the part it was measured on
-    std::int64_t host_time_ns = 0;  // of the frame, steady clock
-    int capture = -1;               // index in RunRecord::captures, -1 = none
+    double sigma_mm = 0;             // of an observed coordinate: spot's own and the feature's
+    bool pose_reported = false;      // false: taught pose taken
+    std::string part_id;             // the part it was measured on
+    std::int64_t host_time_ns = 0;   // of the frame, steady clock
+    int capture = -1;                // index in RunRecord::captures, -1 = none
+    std::optional<SeenLight> light;  // of a spot with settings of its own
 };
 
 enum class PushStatus {

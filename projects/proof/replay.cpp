@@ -70,9 +70,11 @@ class Recomputer {
             }
             const std::string part_id = m.part_id;
             const int capture = m.capture;
+            const auto light = m.light;
             m = it->second.measure(raw);
             m.part_id = part_id;
             m.capture = capture;
+            m.light = light;
         }
         std::vector<RegionRecord> regions = correct_regions(setup_, again.spots, acting_drift(stored));
         for (std::size_t i = 0; i < regions.size(); ++i) {

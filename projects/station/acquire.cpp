@@ -7,18 +7,19 @@
 
 #include "devices/silence.h"
 #include "projects/measure/measure.h"
+#include "projects/station/spot_light.h"
 
 namespace seamwright {
 namespace {
 
 constexpr double kJoggedMm = 0.5, kJoggedDeg = 0.1;
 
+}  // namespace
+
 bool hardware_triggered(const SensorSetup& sensor) {
     const auto it = sensor.settings.find("hardware_trigger");
     return it != sensor.settings.end() && it->is_boolean() && it->get<bool>();
 }
-
-}  // namespace
 
 MeasuringMove measuring_move(const Spot& spot, const Pose& flange_from_sensor) {
     MeasuringMove move;
@@ -31,6 +32,7 @@ MeasuringMove measuring_move(const Spot& spot, const Pose& flange_from_sensor) {
     move.exit.translation() += spot.exit_mm * travel;
     move.speed_mm_s = spot.speed_mm_s;
     move.stop_at_trigger = spot.stop_at_trigger;
+    move.stand_s = standing_time_s(spot);
     return move;
 }
 

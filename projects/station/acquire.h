@@ -14,6 +14,9 @@
 
 namespace seamwright {
 
+// The robot fires the sensor by a wire (setting "hardware_trigger"): one exposure a spot, in the robot's order.
+bool hardware_triggered(const SensorSetup& sensor);
+
 struct AcquireLimits {
     std::chrono::milliseconds trigger_timeout{20000};  // robot: from one spot to the next
     std::chrono::milliseconds frame_timeout{3000};     // sensor: from trigger to frame

@@ -15,6 +15,7 @@
 #include "projects/model/part_types.h"
 #include "projects/model/project.h"
 #include "projects/station/check.h"
+#include "projects/station/spot_light.h"
 
 namespace seamwright {
 namespace {
@@ -156,6 +157,8 @@ void check_spot(const Project& project, const Spot& spot, Findings& findings) {
                     Text("the jitter window of {} mm is not plausible (0..100)", spot.jitter_mm));
     check_profile(spot.reference_profile, joined(where, "", ".reference_profile"), findings);
     check_profile(spot.feature.template_profile, joined(where, "", ".template_profile"), findings);
+    if (const SensorSetup* sensor = find_sensor(project, spot.sensor_id))
+        if (auto sound = check_light(spot, *sensor); !sound) findings.add(sound.error());
     if (spot.curve)
         findings.unless(spot.curve->x_coefficients.allFinite() && spot.curve->z_coefficients.allFinite() &&
                             spot.curve->valid_from_mm <= spot.curve->valid_to_mm,

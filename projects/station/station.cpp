@@ -17,6 +17,7 @@
 #include "projects/station/acquire.h"
 #include "projects/station/check.h"
 #include "projects/station/run_release.h"
+#include "projects/station/spot_light.h"
 
 namespace seamwright {
 struct Station::Impl {
@@ -42,6 +43,7 @@ struct Station::Impl {
     bool writable = true;
     DriftKeeper drift;
     DriftStanding standing;
+    PaintFactors paint_factors;  // of the parts before
 
     Impl(ProjectFile f, Project p) : file(std::move(f)), project(std::move(p)) {}
 
@@ -54,6 +56,7 @@ struct Station::Impl {
         std::map<std::string, TriggeredFrames> frames{};  // by sensor
         std::vector<std::string> started_robots{};        // wait for the verdict
         StartedSensors started_sensors{};                 // stopped when the robots have it
+        std::map<std::string, SensorLight> light{};       // by sensor; set back before they stop
         std::int64_t part_since_ns = 0;
         int done = 0, total = 0;
         StoredMeasurements stored{};
@@ -95,23 +98,55 @@ struct Station::Impl {
             }
     }
 
+    Expected<FramePtr> frame_of(Job& job, const Spot& spot, const TriggerEvent& trigger) {
+        return job.frames.at(spot.sensor_id)
+            .at(trigger, job.options.limits.frame_timeout, job.options.cancel, [&](const Frame& dropped) {
+                job.event(EventKind::device, spot.sensor_id,
+                          Text("frame {} of spot {} came at spot {} and was dropped", dropped.sequence,
+                               dropped.spot_id, spot.id));
+            });
+    }
+
+    // One more exposure of a spot at which the robot stands; none where it may have gone on. Our own robot goes on
+    // when it is asked to.
+    Expected<FramePtr> taken_again(Job& job, const Spot& spot, const TriggerEvent& trigger) {
+        const auto stands = [&] {
+            const RobotSetup* robot = find_robot(job.project, spot.robot_id);
+            return (robot && is_own_device(robot->driver)) ||
+                   1e-9 * static_cast<double>(host_now_ns() - trigger.host_time_ns) < standing_time_s(spot);
+        };
+        if (!stands()) return FramePtr();
+        SEAM_TRY(auto frame, frame_of(job, spot, trigger));
+        return stands() ? frame : FramePtr();
+    }
+
     Expected<void> measure_spot(Job& job, const Spot& spot, const TriggerEvent& trigger) {
-        auto frame =
-            job.frames.at(spot.sensor_id)
-                .at(trigger, job.options.limits.frame_timeout, job.options.cancel, [&](const Frame& dropped) {
-                    job.event(EventKind::device, spot.sensor_id,
-                              Text("frame {} of spot {} came at spot {} and was dropped", dropped.sequence,
-                                   dropped.spot_id, spot.id));
-                });
-        if (!frame) return tl::unexpected(frame.error());
+        SensorLight& light = job.light.at(spot.sensor_id);
+        const bool wired = hardware_triggered(*find_sensor(job.project, spot.sensor_id));
+        const bool exposed_as_meant = light.is_ready_for(spot);
+        if (!exposed_as_meant && !wired) SEAM_OK(light.ready(spot));
+        SEAM_TRY(auto frame, frame_of(job, spot, trigger));
         SpotMeasurer& measurer = job.measurers.at(spot.id);
         SpotMeasurement& result = job.measurement(spot.id);
-        result = measurer.measure(**frame, trigger.base_from_flange);
+        if (!exposed_as_meant && wired) {
+            Frame other;
+            other.status = FrameStatus::incomplete;
+            result = measurer.measure(other, trigger.base_from_flange);
+            result.status = SpotStatus::not_measured;
+            result.message = "the robot fired out of order: it was exposed with another spot's settings";
+        } else {
+            SEAM_TRY(result, light.measure(
+                                 spot, frame, trigger.base_from_flange, measurer,
+                                 [&] { return taken_again(job, spot, trigger); },
+                                 further_exposures(spot) > 0 && !wired));
+        }
         result.part_id = job.run.part_id;
         result.capture = static_cast<int>(job.run.captures.size());
         job.run.captures.push_back(measurer.capture());
-        if (job.options.keep_images && !(*frame)->image.empty() && (*frame)->status == FrameStatus::ok)
-            job.run.captures.back().image = keep_image((*frame)->image);
+        // Of one exposure: from several the stripe cannot be found again in one image.
+        if (job.options.keep_images && !frame->image.empty() && frame->status == FrameStatus::ok &&
+            (!result.light || result.light->exposures == 1))
+            job.run.captures.back().image = keep_image(frame->image);
         if (result.status != SpotStatus::measured)
             job.event(EventKind::note, spot.id,
                       Text("not measured ({}): {}", to_string(result.status), result.message));
@@ -124,6 +159,13 @@ struct Station::Impl {
         for (const Spot& spot : job.project.spots)
             if (spot.enabled && spot.robot_id == robot_id) spots.push_back(&spot);
         RobotLink& robot = *robots.at(robot_id);
+        // A sensor stands as its next spot wants it before the robot comes there.
+        const auto next_of = [&](const std::string& sensor_id, auto from) -> Expected<void> {
+            const auto next =
+                std::find_if(from, spots.end(), [&](const Spot* s) { return s->sensor_id == sensor_id; });
+            return next == spots.end() ? Expected<void>() : job.light.at(sensor_id).ready(**next);
+        };
+        for (auto& [id, light] : job.light) SEAM_OK(next_of(id, spots.begin()));
         SEAM_OK(robot.start_measuring(measuring_program(job.project, robot_id)));
         job.started_robots.push_back(robot_id);
         std::set<std::string> open;
@@ -140,6 +182,7 @@ struct Station::Impl {
                          spot == spots.end() ? "not in the measuring program" : "measured already"),
                     Text("robot {}", robot_id), "compare the program on the controller with the project");
             SEAM_OK(measure_spot(job, **spot, trigger));
+            SEAM_OK(next_of((*spot)->sensor_id, std::next(spot)));
             open.erase(trigger.spot_id);
             ++job.done;
             job.progress(Text("{} {}", (*spot)->id, to_string(job.measurement((*spot)->id).status)));
@@ -160,7 +203,15 @@ struct Station::Impl {
         }
         for (const std::string& id : sensor_ids) {
             SEAM_OK(job.started_sensors.start(*sensors.at(id), job.options.cancel));
-            job.frames.try_emplace(id, *sensors.at(id), *find_sensor(job.project, id));
+            const SensorSetup& setup = *find_sensor(job.project, id);
+            job.frames.try_emplace(id, *sensors.at(id), setup);
+            std::vector<Spot> enabled;
+            std::copy_if(job.project.spots.begin(), job.project.spots.end(), std::back_inserter(enabled),
+                         [](const Spot& s) { return s.enabled; });
+            SEAM_TRY(auto light,
+                     SensorLight::begin(*sensors.at(id), setup, enabled, SensorLight::Look::where_asked,
+                                        job.options.paint, &paint_factors));
+            job.light.emplace(id, std::move(light));
         }
         for (const std::string& id : robot_ids) {
             if (job.options.cancel.stop_requested()) return {};
@@ -616,6 +667,12 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     run.status = RunStatus::ok;
     job.part_since_ns = host_now_ns();
     job.total = static_cast<int>(run.spots.size());
+    if (!options.paint.empty())
+        job.event(EventKind::note, "run",
+                  knows_paint(job.project, options.paint)
+                      ? Text("the paint is {}", options.paint)
+                      : Text("the paint is {}, which no spot knows: measured with the spots' own settings",
+                             options.paint));
 
     auto measured = i.measure_all(job);
     const bool cancelled = options.cancel.stop_requested();

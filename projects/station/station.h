@@ -38,6 +38,7 @@ struct RunProgress {
 struct RunOptions {
     std::string part_id;       // empty = "run <number>"
     std::string part_type;     // id or number of its type, where the project has types (called_type())
+    std::string paint;         // as SpotLight::paints names it; empty: not said
     bool push = false;         // false = dry run: everything but writing
     bool keep_images = false;  // raw images with the run, beside candidates and profiles
     AcquireLimits limits;

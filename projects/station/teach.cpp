@@ -10,6 +10,7 @@
 #include "core/profile/taught_profile.h"
 #include "projects/measure/measure.h"
 #include "projects/station/acquire.h"
+#include "projects/station/spot_light.h"
 
 namespace seamwright {
 namespace {
@@ -44,15 +45,23 @@ Expected<void> measure_standing(Station& station, const Spot& spot, std::span<co
     SEAM_TRY(const auto by_software, SoftwareTriggered::begin(*sensor));
     StartedSensors started;
     SEAM_OK(started.start(*sensor));
+    SEAM_TRY(auto light, SensorLight::begin(*sensor, *find_sensor(project, spot.sensor_id), {&spot, 1},
+                                            SensorLight::Look::always));
+    SEAM_OK(light.ready(spot));
     const AcquireLimits limits;
+    const auto take = [&]() -> Expected<FramePtr> {
+        SEAM_OK(sensor->trigger(spot.id));
+        return next_frame(*sensor, limits.frame_timeout, cancel);
+    };
     for (std::size_t i = 0; i < stands.size(); ++i) {
         if (cancel.stop_requested())
             return device_error(ErrorCode::cancelled, "cancelled", Text("spot {}", spot.id));
         SEAM_TRY(auto at, stand_at(*robot, spot.id, stands[i].base_from_flange));
         for (int n = 0; n < stands[i].measurements; ++n) {
-            SEAM_OK(sensor->trigger(spot.id));
-            SEAM_TRY(auto frame, next_frame(*sensor, limits.frame_timeout, cancel));
-            visit(i, measurer, measurer.measure(*frame, at));
+            SEAM_OK(light.ready(spot));
+            SEAM_TRY(auto frame, take());
+            SEAM_TRY(const auto measured, light.measure(spot, frame, at, measurer, take, true));
+            visit(i, measurer, measured);
         }
         if (progress)
             progress({static_cast<int>(i) + 1, static_cast<int>(stands.size()),
@@ -137,6 +146,7 @@ Expected<TaughtSpot> taught_from(const Spot& draft, std::vector<SpotMeasurement>
         return taught.measurements[i].sigma_mm < taught.measurements[k].sigma_mm;
     });
     taught.spot.reference_profile = profiles[*typical];
+    taught.spot.reference_light = taught.measurements[*typical].light;
     // An arrival counts where one of its measurements does; those of a robot that stands still are one.
     std::set<std::size_t> reached;
     for (std::size_t i : kept) reached.insert(i * static_cast<std::size_t>(arrivals) / count);

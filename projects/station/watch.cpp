@@ -197,7 +197,7 @@ class Watch {
     }
 
     struct Part {
-        std::string id, type;
+        std::string id, type, paint = {};
     };
 
     // As the line names it and of which type; nothing: it is not to be measured, and who called is told.
@@ -210,7 +210,8 @@ class Watch {
         }
         auto type = type_of(start, part);
         if (!type) return refused(start, type.error(), true);
-        return Part{std::move(part.part_id), std::move(*type)};
+        return Part{std::move(part.part_id), std::move(*type),
+                    part.paint ? std::to_string(part.paint) : options_.paint};
     }
 
     std::nullopt_t refused(const StartSignal& start, const Error& error, bool part_type) {
@@ -295,6 +296,7 @@ class Watch {
         RunOptions run;
         run.part_id = part.id;
         run.part_type = part.type;
+        run.paint = part.paint;
         run.push = options_.push;
         run.keep_images = options_.keep_images;
         run.limits = options_.limits;

@@ -78,7 +78,8 @@ struct WatchEvent {
 // A part as the line names it.
 struct NamedPart {
     std::string part_id;
-    int type = 0;  // PartType::number; 0: the line says none
+    int type = 0;   // PartType::number; 0: the line says none
+    int paint = 0;  // names PaintLight::paint by its number; 0: the line says none
 };
 
 // The line beside the robots, as LineControl (projects/line/line_control.h) makes it. Every function returns at once.
@@ -103,6 +104,7 @@ struct WatchOptions {
     // is refused, as one is of an unknown type, of none, and of one that motion_findings() refuses: the robot is told,
     // the frames stay as they are.
     std::string part_type;
+    std::string paint;  // where the line says none
     AcquireLimits limits;
     WatchLine line;
     // A call that may be older (StartSignal::not_before_ns), after an outage, is refused: another part may

@@ -4639,6 +4639,69 @@ ausgelassen</translation>
     </message>
 </context>
 <context>
+    <name>seamwright::SpotLightPanel</name>
+    <message>
+        <source>merged from %1 µs</source>
+        <translation>zusammengeführt aus %1 µs</translation>
+    </message>
+    <message>
+        <source>follows the paint, %1 to %2 µs</source>
+        <translation>folgt dem Lack, %1 bis %2 µs</translation>
+    </message>
+    <message>
+        <source>paint %1: %2</source>
+        <translation>Lack %1: %2</translation>
+    </message>
+    <message>
+        <source>As the sensor stands.</source>
+        <translation>Wie der Sensor eingestellt ist.</translation>
+    </message>
+    <message>
+        <source>Light</source>
+        <translation>Licht</translation>
+    </message>
+    <message>
+        <source>Find light</source>
+        <translation>Licht suchen</translation>
+    </message>
+    <message>
+        <source>The robot stands at the spot; exposure and gain are found from the stripe</source>
+        <translation>Der Roboter steht an der Messstelle; Belichtung und Verstärkung werden an der Linie gefunden</translation>
+    </message>
+    <message>
+        <source>As the sensor</source>
+        <translation>Wie der Sensor</translation>
+    </message>
+    <message>
+        <source>The spot sets nothing of its own any more; undo brings it back</source>
+        <translation>Die Messstelle stellt nichts Eigenes mehr ein; Rückgängig bringt es zurück</translation>
+    </message>
+    <message>
+        <source>light</source>
+        <translation>Licht</translation>
+    </message>
+    <message>
+        <source>Too dark even at %1 µs: open the aperture, or stand still at the trigger.</source>
+        <translation>Auch mit %1 µs zu dunkel: Blende öffnen oder am Trigger stehen bleiben.</translation>
+    </message>
+    <message>
+        <source>Too bright even at the shortest exposure: close the aperture.</source>
+        <translation>Auch mit der kürzesten Belichtung zu hell: Blende schließen.</translation>
+    </message>
+    <message>
+        <source>%1 % of the lines stay dark; where the robot stands still, several exposures are merged.</source>
+        <translation>%1 % der Zeilen bleiben dunkel; wo der Roboter stehen bleibt, werden mehrere Belichtungen zusammengeführt.</translation>
+    </message>
+    <message>
+        <source>No stripe was seen (frames: %1): is the laser on, the part there?</source>
+        <translation>Keine Linie zu sehen (Bilder: %1): ist der Laser an, das Teil da?</translation>
+    </message>
+    <message>
+        <source>Found (frames: %1).</source>
+        <translation>Gefunden (Bilder: %1).</translation>
+    </message>
+</context>
+<context>
     <name>seamwright::SpotTree</name>
     <message>
         <source>Spots and regions</source>
@@ -4830,6 +4893,14 @@ ausgelassen</translation>
     <message>
         <source>The spot was not confirmed.</source>
         <translation>Die Messstelle wurde nicht bestätigt.</translation>
+    </message>
+    <message>
+        <source>Finding the light</source>
+        <translation>Licht wird gesucht</translation>
+    </message>
+    <message>
+        <source>The light was not found.</source>
+        <translation>Das Licht wurde nicht gefunden.</translation>
     </message>
 </context>
 <context>

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <QApplication>
+#include <QLabel>
+#include <QScrollArea>
 #include <QTest>
 #include <QVBoxLayout>
 #include <cmath>
@@ -152,6 +154,40 @@ TEST(Gallery, FrozenContour) {
     view.set_live(straight.front().profile);
     EXPECT_EQ(view.verdict(), "FROZEN") << result->expected_error_mm << " " << result->cure;
     keep_pictures(view, "view-align-frozen", {1100, 640});
+}
+
+// Numbers are never cut, however long the words beside them are (German), and however wide the numbers.
+TEST(Gallery, FrozenContourShowsItsNumbersWhole) {
+    AlignmentOptions options;
+    options.tolerance_mm = 12.34;
+    options.jitter_mm = 12.5;
+    AlignView view;
+    const auto skew = pass_with(2);
+    auto result = check_alignment(skew, options);
+    ASSERT_TRUE(result);
+    result->yaw_deg = -12.34;
+    result->sigma_yaw_deg = 11.11;
+    view.set_result(skew, *result, options);
+    for (const QSize size : {QSize(700, 300), QSize(1100, 640)})
+        for (const bool longer : {false, true}) {
+            for (auto* label : view.findChildren<QLabel*>())
+                if (longer && label->text() == "Error from jitter")
+                    label->setText("Fehler durch Auslösestreuung");
+            view.resize(size);
+            view.show();
+            QTest::qWait(50);
+            auto* panel = view.findChild<QScrollArea*>();
+            ASSERT_TRUE(panel);
+            const int right = panel->viewport()->mapTo(&view, QPoint(panel->viewport()->width(), 0)).x();
+            for (auto* label : panel->findChildren<QLabel*>()) {
+                const int end = label->mapTo(&view, QPoint(label->width(), 0)).x();
+                EXPECT_LE(end, right) << label->text().toStdString();
+                if (!label->wordWrap()) {
+                    EXPECT_GE(label->width(), label->fontMetrics().horizontalAdvance(label->text()))
+                        << label->text().toStdString();
+                }
+            }
+        }
 }
 
 TEST(Gallery, Scene) {

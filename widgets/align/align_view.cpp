@@ -127,7 +127,9 @@ AlignView::AlignView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
     grid->setContentsMargins(0, 8, 0, 8);
     int line = 0;
     const auto number = [&](const QString& name, const QString& tip) {
+        // The word gives way to the number, which is never cut.
         auto* label = new QLabel(name, side);
+        label->setWordWrap(true);
         auto* value = new QLabel(side);
         value->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
         value->setAccessibleName(name);
@@ -147,7 +149,7 @@ AlignView::AlignView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
     impl_->tolerance =
         number(tr("Tolerance"), tr("What the jitter may cause at most, and the window it was judged over"));
     impl_->shape = number(tr("Shape change"), tr("What remains after the profiles are laid over each other"));
-    grid->setColumnStretch(1, 1);
+    grid->setColumnStretch(0, 1);
     impl_->arrow = new CureArrow(side);
     column->addWidget(impl_->arrow);
     column->addLayout(grid);

@@ -30,6 +30,9 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
     make_via_points(*in);
     make_devices(*in);
     make_feature(*in);
+    light_ = new SpotLightPanel(desk_);
+    in->addWidget(light_);
+    connect(light_, &SpotLightPanel::edited, this, [this](const Expected<void>& result) { done(result); });
     make_reference(*in);
     make_fields(*in);
     box().addStretch(1);
@@ -321,6 +324,7 @@ void TeachPage::take_reference(const TaughtSpot& taught) {
     after.reference_mm = taught.spot.reference_mm;
     after.reference_profile = taught.spot.reference_profile;
     after.reference_arrivals = taught.spot.reference_arrivals;
+    after.reference_light = taught.spot.reference_light;
     after.reference_state = taught.spot.reference_state;
     after.curve.reset();
     if (done(desk_.edit(after, tr("reference")))) {
@@ -424,6 +428,7 @@ void TeachPage::refresh() {
         kind_help_->setText(shown(Text::chosen(kind->help)));
     window_->setVisible(s->feature.kind == "template");
     pick_->setVisible(s->feature.kind != "template");
+    light_->refresh(s);
     show_parameters(*s);
     confirm_->setVisible(s->reference_state == ReferenceState::from_drawing &&
                          s->reference_profile.size() > 0);

@@ -10,6 +10,7 @@
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
 #include "widgets/pages/parts/spot_head.h"
+#include "widgets/pages/parts/spot_light_panel.h"
 #include "widgets/pages/parts/spot_tree.h"
 #include "widgets/pages/parts/step_page.h"
 
@@ -66,6 +67,7 @@ class TeachPage : public StepPage {
     QLabel *kind_help_, *reference_, *spread_;
     Spot spread_of_;  // as it was when measured
     QSpinBox* repeats_;
+    SpotLightPanel* light_;
     QVBoxLayout *parameters_, *fields_;
     QWidget* inspector_;
     std::string shown_kind_;

@@ -211,6 +211,18 @@ void StationWorker::teach(const Spot& draft, int repeats) {
     });
 }
 
+void StationWorker::find_light(const Spot& spot) {
+    post(tr("Finding the light"), [=, this](Station& station, const std::stop_token& cancelled) {
+        FindLightOptions options;
+        options.cancel = cancelled;
+        auto found = seamwright::find_light(station, spot, options);
+        if (!found)
+            emit failed(shown_error(tr("The light was not found."), found.error()));
+        else
+            emit light_found(std::make_shared<const LightOfSpot>(LightOfSpot{spot, std::move(*found)}));
+    });
+}
+
 void StationWorker::record_pass(const Spot& spot, double step_mm, const AlignmentOptions& alignment) {
     post(tr("Recording the pass"), [=, this](Station& station, const std::stop_token& cancelled) {
         PassOptions options;

@@ -24,6 +24,7 @@
 #include "projects/confirm/confirm.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
+#include "projects/station/spot_light.h"
 #include "projects/station/station.h"
 #include "projects/station/teach.h"
 #include "widgets/worker/live_feed.h"
@@ -46,6 +47,11 @@ struct StationState {
     std::vector<RobotState> robots;
     Text trouble;                                 // of the last attempt to connect
     std::chrono::steady_clock::time_point asked;  // when this was so
+};
+
+struct LightOfSpot {
+    Spot spot;  // as it was
+    FoundLight light;
 };
 
 struct PassResult {
@@ -81,6 +87,7 @@ class StationWorker : public QObject {
     void measure_robot(const MeasureRobotOptions& options);
     void measure_trigger(const MeasureTriggerOptions& options);
     void teach(const Spot& draft, int repeats);
+    void find_light(const Spot& spot);         // light_found() brings it
     void confirm(const std::string& spot_id);  // from the drawing; confirmed() brings what was found
     void record_pass(const Spot& spot, double step_mm, const AlignmentOptions& options);
     // Robot standing still: its pose, the stripe, and with `board` a second image with the laser off, exposed
@@ -114,6 +121,7 @@ class StationWorker : public QObject {
     void cameras_found(std::shared_ptr<const std::vector<seamwright::DiscoveredCamera>> cameras);
     void proven();  // an evidence has come into the file
     void taught(std::shared_ptr<const seamwright::TaughtSpot> taught);
+    void light_found(std::shared_ptr<const seamwright::LightOfSpot> found);
     void confirmed(std::shared_ptr<const seamwright::Confirmation> confirmation);
     void passed(std::shared_ptr<const seamwright::PassResult> pass);
     // What failed is in them: who asked for it says it.

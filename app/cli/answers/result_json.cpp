@@ -45,6 +45,15 @@ void put_spread(const T& r, json& out) {
 }
 }  // namespace
 
+json light_json(const SeenLight& light) {
+    const auto value = [](const std::optional<double>& v) { return v ? json(*v) : json(); };
+    return {{"settings", light.settings},
+            {"bright", value(light.bright)},
+            {"saturated_share", value(light.saturated_share)},
+            {"width_px", value(light.width_px)},
+            {"exposures", light.exposures}};
+}
+
 json correction_json(const RegionCorrection& c) {
     json spots = json::array();
     for (const SpotResidual& s : c.spots)

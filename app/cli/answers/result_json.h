@@ -9,6 +9,7 @@
 #include "core/features/feature.h"
 #include "core/features/registration/registration.h"
 #include "core/panel/panel_fit.h"
+#include "core/profile/stripe/stripe_light.h"
 
 namespace seamwright::cli {
 
@@ -18,6 +19,7 @@ nlohmann::json matrix_json(const Eigen::Ref<const Eigen::MatrixXd>& m);  // rows
 // "X 1234.56 Y ... mm  A ... B ... C ... deg (KUKA A B C)"
 std::string pose_text(const Pose& pose);
 
+nlohmann::json light_json(const SeenLight& light);
 nlohmann::json correction_json(const RegionCorrection& correction);
 // Sigma of the six numbers, a line; and its random and systematic part where something is systematic.
 std::string correction_sigma_text(const RegionCorrection& correction);

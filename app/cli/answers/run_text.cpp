@@ -122,13 +122,15 @@ std::optional<Answer> refuse_unsafe(Station& station, const std::vector<Error>& 
 
 json run_json(const RunRecord& run) {
     json spots = json::array(), regions = json::array(), events = json::array();
-    for (const SpotMeasurement& s : run.spots)
+    for (const SpotMeasurement& s : run.spots) {
         spots.push_back({{"id", s.spot_id},
                          {"status", to_string(s.status)},
                          {"message", s.message},
                          {"feature", feature_json(s.feature)},
                          {"measured_mm", vector_json(s.measured_mm)},
                          {"sigma_mm", s.sigma_mm}});
+        if (s.light) spots.back()["light"] = light_json(*s.light);
+    }
     for (const RegionRecord& r : run.regions) {
         regions.push_back({{"id", r.region_id},
                            {"correction", r.correction ? correction_json(*r.correction) : json()},

@@ -21,6 +21,8 @@ MODULE Seamwright
     PERS bool swGo:=FALSE;
     PERS bool swEnded:=FALSE;
     PERS num swFired:=0;
+    ! How long the robot stands after the next trigger, seconds: longer where a spot is exposed several times.
+    VAR num swStand:=0.1;
     PERS pose swAt{64};
     ! The permission: for which part it is given, and whether it is gone (taken here, or taken back by the server).
     PERS num swGivenFor:=0;
@@ -102,7 +104,8 @@ MODULE Seamwright
             WaitTime 0.3;
             SetDO sw_doTrigger,1;
             swFired:=number;
-            WaitTime 0.1;
+            WaitTime swStand;
+            swStand:=0.1;
         ELSE
             TriggL spot,speed,pulse\T2:=latch,z1,swTool\WObj:=wobj0;
         ENDIF

@@ -282,6 +282,32 @@ TEST_F(Furniture, WhatWasMeasuredAtAnotherPoseOrFeatureGoesWithTheEdit) {
     EXPECT_EQ(spot().reference_mm, before);
 }
 
+TEST_F(Furniture, TheLightOfASpotIsFoundKeptUndoneAndTakenBack) {
+    start(true);
+    Desk& desk = studio->desk();
+    Person me(window());
+    ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
+    desk.selection().select_spot(desk.project().spots.front().id);
+    me.step(3);
+    const auto spot = [&]() -> const Spot& { return desk.project().spots.front(); };
+    EXPECT_EQ(me.text_of("spot_light"), "As the sensor stands.");
+    me.click("find_light");
+    ASSERT_TRUE(me.wait([&] { return !spot().light.empty(); }));
+    EXPECT_GT(spot().light.settings.at("exposure_us"), 50);
+    EXPECT_GT(spot().reference_profile.size(), 0U) << "light takes no reference away";
+    EXPECT_TRUE(me.text_of("spot_light").contains("exposure_us"));
+    EXPECT_TRUE(me.text_of("light_found").contains("Found"));
+    ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
+    // What is measured from then on is cut with it, and the reference remembers it.
+    me.click("measure_reference");
+    ASSERT_TRUE(me.wait(
+        [&] { return spot().reference_light && spot().reference_light->settings == spot().light.settings; }));
+    me.click("clear_light");
+    EXPECT_TRUE(spot().light.empty());
+    me.shortcut(Qt::Key_Z);
+    EXPECT_FALSE(spot().light.empty());
+}
+
 TEST_F(Furniture, RecentFilesAreListedNewestFirstAndRemembered) {
     ASSERT_TRUE(studio->create(path("one.seam")));
     ASSERT_TRUE(studio->create(path("two.seam")));

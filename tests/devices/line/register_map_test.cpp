@@ -97,11 +97,12 @@ TEST(LineRegisters, WhatIsNoNumberIsSaidSo) {
 }
 
 TEST(LineRegisters, TheLinesWordsAreReadWhateverTheyHold) {
-    std::array<std::uint16_t, kLineWords> words{7, 2, 3, 0, 1, 2, 'C' << 8 | 'A', 'R' << 8 | '-', '1' << 8};
+    std::array<std::uint16_t, kLineWords> words{7, 2, 3, 41, 1, 2, 'C' << 8 | 'A', 'R' << 8 | '-', '1' << 8};
     LineWords read = read_line_words(words);
     EXPECT_EQ(read.heartbeat, 7);
     EXPECT_TRUE(read.start);
     EXPECT_EQ(read.part.type, 3);
+    EXPECT_EQ(read.part.paint, 41);
     EXPECT_EQ(read.part.number, 65538u);
     EXPECT_EQ(read.part.id(), "CAR-1");
     words[6] = 0;
@@ -146,9 +147,10 @@ TEST(LineRegisters, EveryProtocolDescribesItselfAndRefusesWhatItDoesNotKnow) {
 
 TEST(LineRegisters, CommandsOfABrokerAreReadStrictly) {
     const auto good =
-        read_mqtt_command(R"({"id":"7","start":true,"part_type":2,"part_number":815,"part_name":"CAR"})");
+        read_mqtt_command(R"({"id":"7","start":true,"part_type":2,"paint":41,"part_number":815,"part_name":"CAR"})");
     ASSERT_TRUE(good);
     EXPECT_EQ(good->part.type, 2);
+    EXPECT_EQ(good->part.paint, 41);
     EXPECT_EQ(*good->start, true);
     EXPECT_FALSE(read_mqtt_command(R"({"id":"8","part_type":2})")->start);
     for (const char* bad : {"",
@@ -163,6 +165,8 @@ TEST(LineRegisters, CommandsOfABrokerAreReadStrictly) {
                             R"({"id":"1","start":"true"})",
                             R"({"id":"1","part_type":-1})",
                             R"({"id":"1","part_type":65536})",
+                            R"({"id":"1","paint":65536})",
+                            R"({"id":"1","paint":"white"})",
                             R"({"id":"1","part_number":1.5})",
                             R"({"id":"1","part_number":4294967296})",
                             R"({"id":"1","part_name":5})",

@@ -25,7 +25,10 @@ MEMBERS(SpotResidual, a, b, c)
 MEMBERS(DofSigma, a, b)
 MEMBERS(RegionCorrection, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
 MEMBERS(Feature, a, b, c, d, e, f, g, h)
-MEMBERS(SpotMeasurement, a, b, c, d, e, f, g, h, i, j)
+MEMBERS(SpotMeasurement, a, b, c, d, e, f, g, h, i, j, k)
+MEMBERS(SeenLight, a, b, c, d, e)
+MEMBERS(SpotLight, a, b, c, d, e)
+MEMBERS(PaintLight, a, b)
 MEMBERS(PushRecord, a, b, c, d, e, f, g)
 MEMBERS(RegionRecord, a, b, c, d, e, f, g, h, i)
 MEMBERS(ActingDrift, a, b, c, d, e, f, g, h)
@@ -54,7 +57,7 @@ MEMBERS(RobotSetup, a, b, c, d, e, f, g, h)
 MEMBERS(NozzleTip, a, b, c, d)
 MEMBERS(Calibration, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o)
 MEMBERS(FeatureRecipe, a, b, c, d)
-MEMBERS(Spot, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v)
+MEMBERS(Spot, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x)
 MEMBERS(DrawingOrigin, a, b, c, d, e, f)
 MEMBERS(Region, a, b, c, d, e, f, g, h, i, j, k)
 MEMBERS(KeptOffset, a, b, c, d, e)
@@ -96,8 +99,10 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     whole(region.correction->spots[0], r["correction"]["spots"][0]);
 
     SpotMeasurement spot;
+    spot.light.emplace();
     const auto s = to_json_document(spot);
     whole(spot, s);
+    whole(*spot.light, s["light"]);
     whole(spot.feature, s["feature"]);
 
     PanelRecord panel;
@@ -132,7 +137,11 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     taught.reference_arrivals = 5;
     taught.reference_state = ReferenceState::from_drawing;
     taught.drawn.emplace();
+    taught.reference_light.emplace();
+    taught.light.paints.resize(1);
     const auto t = to_json_document(taught);
+    whole(taught.light, t["light"]);
+    whole(taught.light.paints[0], t["light"]["paints"][0]);
     whole(taught, t);
     whole(*taught.drawn, t["drawn"]);
     whole(taught.feature, t["feature"]);

@@ -32,7 +32,7 @@ namespace {
 using nlohmann::json;
 
 struct RunArguments {
-    std::string file, part, type;
+    std::string file, part, type, paint;
     bool push = false, dry_run = false, keep_images = false, watch = false;
     int hold_s = static_cast<int>(kHold.count() / 1000);
     std::string log, record;
@@ -151,6 +151,7 @@ Expected<Answer> watch_project(const RunArguments& a) {
     if (auto refused = refuse_unsafe(station, findings_of_watching(station.project(), a))) return *refused;
     WatchOptions options;
     options.part_type = a.type;
+    options.paint = a.paint;
     options.push = a.push;
     options.keep_images = a.keep_images;
     options.parts = a.parts;
@@ -205,6 +206,7 @@ Expected<Answer> run(const RunArguments& a) {
     RunOptions options;
     options.part_id = a.part;
     options.part_type = type;
+    options.paint = a.paint;
     options.push = a.push;
     options.keep_images = a.keep_images;
     options.hold = std::chrono::seconds(a.hold_s);
@@ -289,6 +291,10 @@ void add_run(CommandLine& line) {
             "Its type, by id or number, in a project with part types; with --watch where neither robot "
             "nor line says one")
         ->type_name("ID");
+    command
+        ->add_option("--paint", a->paint,
+                     "Its colour, as `expose --paint` names it; with --watch where the line says none")
+        ->type_name("NAME");
     auto* push =
         command->add_flag("--push", a->push, "Write the corrected frames, if the safety gate passes them");
     command->add_flag("--dry-run", a->dry_run, "Everything but writing (the default)")->excludes(push);

@@ -1,0 +1,35 @@
+#pragma once
+// The light of a spot: what the sensor is set to there, and to have it found on the part.
+
+#include <QLabel>
+#include <QPushButton>
+#include <QWidget>
+
+#include "projects/station/spot_light.h"
+#include "widgets/desk/desk.h"
+
+namespace seamwright {
+
+// "exposure_us 812, gain_db 0; merged from 250, 2000 µs"; what the spot sets, or that it sets nothing.
+QString light_words(const SpotLight& light);
+
+class SpotLightPanel : public QWidget {
+    Q_OBJECT
+  public:
+    explicit SpotLightPanel(Desk& desk, QWidget* parent = nullptr);
+    void refresh(const Spot* spot);  // nullptr: none is selected
+
+  signals:
+    void edited(const tl::expected<void, seamwright::Error>& result);
+
+  private:
+    void take(const Spot& asked, const FoundLight& found);
+    void edit(Spot after, const QString& what);
+
+    Desk& desk_;
+    std::string spot_id_;
+    QLabel *now_, *said_;
+    QPushButton *find_, *clear_;
+};
+
+}  // namespace seamwright

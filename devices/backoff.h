@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
 namespace seamwright {
 
@@ -13,6 +14,15 @@ class Backoff {
     using Milliseconds = std::chrono::milliseconds;
 
     Backoff(Milliseconds first, Milliseconds most) : first_(first), most_(std::max(first, most)) {}
+
+    // One attempt to connect where one is due, its outcome noted; nullopt: none is due. `connect` answers Expected<...>.
+    template <class Connect>
+    auto attempt(const Connect& connect) -> std::optional<decltype(connect())> {
+        if (!due()) return std::nullopt;
+        auto made = connect();
+        made ? worked() : failed();
+        return made;
+    }
 
     bool due() const { return Clock::now() >= not_before_; }
     // 0 or less: due.

@@ -5,6 +5,7 @@
 
 #include "core/geometry/decompositions.h"
 #include "core/median.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
@@ -96,7 +97,7 @@ Refined refine(const Cloud& cloud, const Surface& surface, const Pose& start, co
         const Matrix6 to_tangent =
             tangent_of_motion(out.base_from_part, out.system.middle, out.system.spread_mm);
         out.base_from_part = retract(out.base_from_part, to_tangent * motion);
-        const double wanted = std::max(options.floor_mm, 4.5 * 1.4826 * out.system.median_mm);
+        const double wanted = std::max(options.floor_mm, 4.5 * kMadToSigma * out.system.median_mm);
         const bool gate_stands = out.gate_mm <= 1.02 * wanted;
         out.gate_mm = std::max(std::min(out.gate_mm, wanted), 0.75 * out.gate_mm);
         calm = gate_stands && longest < 1e-4 + 1e-3 * out.system.median_mm ? calm + 1 : 0;

@@ -8,6 +8,7 @@
 #include "core/correction/correction.h"
 #include "core/geometry/decompositions.h"
 #include "core/median.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 PolynomialFit fit_polynomial(std::span<const double> y, std::span<const double> v, int order) {
@@ -36,7 +37,7 @@ PolynomialFit fit_polynomial(std::span<const double> y, std::span<const double> 
         residual = value - a * c;
         std::vector<double> size(static_cast<std::size_t>(n));
         for (Eigen::Index i = 0; i < n; ++i) size[static_cast<std::size_t>(i)] = std::abs(residual[i]);
-        robust = 1.4826 * median(size);
+        robust = kMadToSigma * median(size);
         if (settled || round == 29) break;
         const double cut = std::max(6.0 * robust, 1e-9);
         for (Eigen::Index i = 0; i < n; ++i) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/geometry/decompositions.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 
@@ -30,7 +31,7 @@ NeesInterval nees_interval(int degrees, int trials) {
     assert(degrees > 0 && trials > 0);
     const double k = static_cast<double>(degrees) * trials, a = 2 / (9 * k);
     const auto quantile = [&](double z) { return degrees * std::pow(1 - a + z * std::sqrt(a), 3); };
-    return {quantile(-1.959964), quantile(1.959964)};
+    return {quantile(-kNormal95), quantile(kNormal95)};
 }
 
 double nees(const Vector6& error, const Matrix6& covariance) {

@@ -1,5 +1,6 @@
 #include "core/profile/units.h"
 #include "core/median.h"
+#include "core/numbers.h"
 
 #include <fmt/format.h>
 
@@ -97,10 +98,10 @@ ProfileScale profile_scale(const Profile& profile) {
     for (std::size_t i = 1; i < points.size(); ++i) {
         steps.push_back((points[i] - points[i - 1]).norm());
         x_steps.push_back(points[i].x() - points[i - 1].x());
-        // Second differences of white noise scatter by sqrt(6) of its sigma; 0.6745: median to sigma.
+        // Second differences of white noise scatter by sqrt(6) of its sigma.
         if (i > 1)
-            bends.push_back(std::abs(points[i].y() - 2 * points[i - 1].y() + points[i - 2].y()) /
-                            (std::sqrt(6.0) * 0.6745));
+            bends.push_back(std::abs(points[i].y() - 2 * points[i - 1].y() + points[i - 2].y()) *
+                            kMadToSigma / std::sqrt(6.0));
     }
     s.pitch = median(steps);
     s.noise = median(bends);

@@ -7,11 +7,10 @@
 #include <vector>
 
 #include "core/acceptance/distributions.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
-
-constexpr double kNormal975 = 1.959963984540054;
 
 struct Effective {
     double n = 0, degrees = 0;
@@ -29,7 +28,7 @@ Capability capability(const ProcessLimits& limits, double mean, double sigma, co
     if (limits.upper) side = std::min(side, *limits.upper - mean);
     if (limits.lower) side = std::min(side, mean - *limits.lower);
     const double k = side / (3 * sigma);
-    const double by = kNormal975 * std::sqrt(1 / (9 * data.n) + k * k / (2 * data.degrees));
+    const double by = kNormal95 * std::sqrt(1 / (9 * data.n) + k * k / (2 * data.degrees));
     c.worst_side = Index{k, {k - by, k + by}};
     return c;
 }

@@ -312,27 +312,25 @@ void GenicamSource::bury() {
 }
 
 Expected<void> GenicamSource::reconnect(milliseconds most) {
-    if (!back_off_.due())
+    const auto attempt = [&]() -> Expected<void> {
+        ++attempts_;
+        // Nobody there is found out quickly; opening would wait for every register.
+        if (const auto there = address_.empty() ? Expected<DiscoveredCamera>()
+                                                : ask_camera(address_, std::min(most, kHeartbeatWait));
+            !there && (!settings_.address.empty() || attempts_ < kMisses))
+            return tl::unexpected(there.error());
+        auto done = connect();
+        if (done && running_) done = start_stream();
+        if (!done && camera_) bury();
+        return done;
+    };
+    const auto done = back_off_.attempt(attempt);
+    if (!done)
         return device_error(ErrorCode::silence, Text("{}: the camera is gone", kNoAnswer),
                             settings_.camera_name(),
                             "check its power and cable; it is connected again by itself");
-    ++attempts_;
-    // Nobody there is found out quickly; opening would wait for every register.
-    Expected<void> done;
-    if (const auto there = address_.empty() ? Expected<DiscoveredCamera>()
-                                            : ask_camera(address_, std::min(most, kHeartbeatWait));
-        !there && (!settings_.address.empty() || attempts_ < kMisses))
-        done = tl::unexpected(there.error());
-    else
-        done = connect();
-    if (done && running_) done = start_stream();
-    if (!done) {
-        if (camera_) bury();
-        back_off_.failed();
-        return done;
-    }
-    ++counters_.reconnects;
-    return {};
+    if (*done) ++counters_.reconnects;
+    return *done;
 }
 
 Expected<void> GenicamSource::start_stream() {

@@ -318,18 +318,17 @@ class GocatorSource final : public ProfileSource {
     }
 
     Expected<void> reconnect() {
-        if (!back_off_.due())
-            return device_error(ErrorCode::disconnected, kDisconnected, where(), kLookAtSensor);
-        auto made = connect();
-        if (made) made = begin();
-        if (!made) {
+        const auto made = back_off_.attempt([this]() -> Expected<void> {
+            SEAM_OK(connect());
+            return begin();
+        });
+        if (!made) return device_error(ErrorCode::disconnected, kDisconnected, where(), kLookAtSensor);
+        if (!*made) {
             lost();
-            back_off_.failed();
-            if (is_disconnect(made.error()) || is_silence(made.error()))
+            if (is_disconnect(made->error()) || is_silence(made->error()))
                 return device_error(ErrorCode::disconnected, kDisconnected, where(), kLookAtSensor);
-            return made;
+            return *made;
         }
-        back_off_.worked();
         const std::lock_guard lock(mutex_);
         ++counters_.reconnects;
         return {};

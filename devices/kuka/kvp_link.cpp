@@ -282,19 +282,17 @@ class KvpLink final : public RobotLink {
 
     Expected<void> connected() {
         if (connection_ && connection_->is_open()) return {};
-        if (!back_off_.due())
+        auto made = back_off_.attempt([this] {
+            return TcpConnection::connect(settings_.address, static_cast<std::uint16_t>(settings_.port),
+                                          timeout_);
+        });
+        if (!made)
             return device_error(ErrorCode::disconnected,
                                 Text("{}, the next attempt is due soon", kDisconnected), where_,
                                 "check that KUKAVARPROXY runs on the controller");
-        auto made =
-            TcpConnection::connect(settings_.address, static_cast<std::uint16_t>(settings_.port), timeout_);
-        if (!made) {
-            back_off_.failed();
-            return fail(made.error());
-        }
-        back_off_.worked();
+        if (!*made) return fail(made->error());
         stream_.clear();
-        connection_.emplace(std::move(*made));
+        connection_.emplace(std::move(**made));
         robot_.connected_anew();
         return {};
     }

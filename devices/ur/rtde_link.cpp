@@ -416,30 +416,27 @@ class RtdeLink final : public RobotLink {
         // Whoever asks next learns that the connection was lost meanwhile, before another is made.
         if (lost_) return tl::unexpected(*std::exchange(lost_, std::nullopt));
         if (connection_ && connection_->is_open()) return {};
-        if (!back_off_.due())
+        const auto done = back_off_.attempt([this] { return connect(); });
+        if (!done)
             return device_error(ErrorCode::disconnected,
                                 Text("{}, the next attempt is due soon", kDisconnected), where_,
                                 "check that the controller is on");
-        auto made =
-            TcpConnection::connect(settings_.address, static_cast<std::uint16_t>(settings_.port), timeout_);
-        if (made) {
-            connection_.emplace(std::move(*made));
-            stream_.clear();
-            said_.clear();
-            // Far from the numbers of a connection that the module may still hold an unanswered request of.
-            number_ = static_cast<std::int32_t>(host_now_ns() / 1000 % 1'000'000'000) + 1;
-            session_ = number_;
-            last_request_.clear();
-            if (auto ready = negotiate(Clock::now() + timeout_); ready) {
-                back_off_.worked();
-                robot_.connected_anew();
-                return {};
-            } else {
-                made = tl::unexpected(ready.error());
-            }
-        }
-        back_off_.failed();
-        return fail(made.error());
+        if (!*done) return fail(done->error());
+        robot_.connected_anew();
+        return {};
+    }
+
+    Expected<void> connect() {
+        SEAM_TRY(auto made, TcpConnection::connect(settings_.address,
+                                                   static_cast<std::uint16_t>(settings_.port), timeout_));
+        connection_.emplace(std::move(made));
+        stream_.clear();
+        said_.clear();
+        // Far from the numbers of a connection that the module may still hold an unanswered request of.
+        number_ = static_cast<std::int32_t>(host_now_ns() / 1000 % 1'000'000'000) + 1;
+        session_ = number_;
+        last_request_.clear();
+        return negotiate(Clock::now() + timeout_);
     }
 
     Expected<void> take(const Package& package) {

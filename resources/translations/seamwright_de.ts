@@ -682,6 +682,802 @@
         <source>no</source>
         <translation>nein</translation>
     </message>
+    <message>
+        <source>Seed</source>
+        <translation>Startwert des Zufalls</translation>
+    </message>
+    <message>
+        <source>Scene</source>
+        <translation>Szene</translation>
+    </message>
+    <message>
+        <source>Mesh</source>
+        <translation>Netz</translation>
+    </message>
+    <message>
+        <source>Mesh's unit</source>
+        <translation>Einheit des Netzes</translation>
+    </message>
+    <message>
+        <source>Base from work object</source>
+        <translation>Basis aus Werkobjekt</translation>
+    </message>
+    <message>
+        <source>Base from target</source>
+        <translation>Basis aus Zielkörper</translation>
+    </message>
+    <message>
+        <source>Flange from sensor</source>
+        <translation>Flansch aus Sensor</translation>
+    </message>
+    <message>
+        <source>Part</source>
+        <translation>Teil</translation>
+    </message>
+    <message>
+        <source>Displacement</source>
+        <translation>Verschiebung</translation>
+    </message>
+    <message>
+        <source>Bend</source>
+        <translation>Biegung</translation>
+    </message>
+    <message>
+        <source>Twist</source>
+        <translation>Verwindung</translation>
+    </message>
+    <message>
+        <source>Optics</source>
+        <translation>Optik</translation>
+    </message>
+    <message>
+        <source>Width</source>
+        <translation>Breite</translation>
+    </message>
+    <message>
+        <source>Height</source>
+        <translation>Höhe</translation>
+    </message>
+    <message>
+        <source>Bit depth</source>
+        <translation>Bittiefe</translation>
+    </message>
+    <message>
+        <source>Stand-off</source>
+        <translation>Arbeitsabstand</translation>
+    </message>
+    <message>
+        <source>Triangulation angle</source>
+        <translation>Triangulationswinkel</translation>
+    </message>
+    <message>
+        <source>Field of view</source>
+        <translation>Sichtfeld</translation>
+    </message>
+    <message>
+        <source>Distortion k1</source>
+        <translation>Verzeichnung k1</translation>
+    </message>
+    <message>
+        <source>Distortion k2</source>
+        <translation>Verzeichnung k2</translation>
+    </message>
+    <message>
+        <source>Distortion p1</source>
+        <translation>Verzeichnung p1</translation>
+    </message>
+    <message>
+        <source>Distortion p2</source>
+        <translation>Verzeichnung p2</translation>
+    </message>
+    <message>
+        <source>Distortion k3</source>
+        <translation>Verzeichnung k3</translation>
+    </message>
+    <message>
+        <source>Laser line's width</source>
+        <translation>Breite der Laserlinie</translation>
+    </message>
+    <message>
+        <source>Laser fan</source>
+        <translation>Laserfächer</translation>
+    </message>
+    <message>
+        <source>Blur</source>
+        <translation>Unschärfe</translation>
+    </message>
+    <message>
+        <source>Blooming</source>
+        <translation>Überstrahlen</translation>
+    </message>
+    <message>
+        <source>Surface</source>
+        <translation>Oberfläche</translation>
+    </message>
+    <message>
+        <source>Diffuse reflection</source>
+        <translation>Diffuse Reflexion</translation>
+    </message>
+    <message>
+        <source>Gloss</source>
+        <translation>Glanz</translation>
+    </message>
+    <message>
+        <source>Exponent of the gloss</source>
+        <translation>Exponent des Glanzes</translation>
+    </message>
+    <message>
+        <source>Share of dark patches</source>
+        <translation>Anteil dunkler Flecken</translation>
+    </message>
+    <message>
+        <source>Diffuse reflection of the patches</source>
+        <translation>Diffuse Reflexion der Flecken</translation>
+    </message>
+    <message>
+        <source>Size of the patches</source>
+        <translation>Größe der Flecken</translation>
+    </message>
+    <message>
+        <source>Mirror</source>
+        <translation>Spiegelung</translation>
+    </message>
+    <message>
+        <source>Noise</source>
+        <translation>Rauschen</translation>
+    </message>
+    <message>
+        <source>Shot noise</source>
+        <translation>Photonenrauschen</translation>
+    </message>
+    <message>
+        <source>Read noise, electrons</source>
+        <translation>Ausleserauschen, Elektronen</translation>
+    </message>
+    <message>
+        <source>Speckle</source>
+        <translation>Speckle</translation>
+    </message>
+    <message>
+        <source>Daylight, electrons per ms</source>
+        <translation>Tageslicht, Elektronen je ms</translation>
+    </message>
+    <message>
+        <source>Chance of a stray reflection</source>
+        <translation>Wahrscheinlichkeit eines Streureflexes</translation>
+    </message>
+    <message>
+        <source>Chance of a damaged frame</source>
+        <translation>Wahrscheinlichkeit eines beschädigten Bildes</translation>
+    </message>
+    <message>
+        <source>Buffers</source>
+        <translation>Puffer</translation>
+    </message>
+    <message>
+        <source>Sphere's radius</source>
+        <translation>Kugelradius</translation>
+    </message>
+    <message>
+        <source>Serial number</source>
+        <translation>Seriennummer</translation>
+    </message>
+    <message>
+        <source>Board</source>
+        <translation>Tafel</translation>
+    </message>
+    <message>
+        <source>Columns</source>
+        <translation>Spalten</translation>
+    </message>
+    <message>
+        <source>Rows</source>
+        <translation>Zeilen</translation>
+    </message>
+    <message>
+        <source>Pitch</source>
+        <translation>Teilung</translation>
+    </message>
+    <message>
+        <source>Drift</source>
+        <translation>Drift</translation>
+    </message>
+    <message>
+        <source>Sensor</source>
+        <translation>Sensor</translation>
+    </message>
+    <message>
+        <source>Robot</source>
+        <translation>Roboter</translation>
+    </message>
+    <message>
+        <source>Time constant, parts</source>
+        <translation>Zeitkonstante, Teile</translation>
+    </message>
+    <message>
+        <source>Time constant</source>
+        <translation>Zeitkonstante</translation>
+    </message>
+    <message>
+        <source>From part</source>
+        <translation>Ab Teil</translation>
+    </message>
+    <message>
+        <source>Knock</source>
+        <translation>Stoß</translation>
+    </message>
+    <message>
+        <source>Knock before part</source>
+        <translation>Stoß vor Teil</translation>
+    </message>
+    <message>
+        <source>Knock after</source>
+        <translation>Stoß nach</translation>
+    </message>
+    <message>
+        <source>Repeatability</source>
+        <translation>Wiederholgenauigkeit</translation>
+    </message>
+    <message>
+        <source>Repeatability, turn</source>
+        <translation>Wiederholgenauigkeit, Drehung</translation>
+    </message>
+    <message>
+        <source>Trigger latency</source>
+        <translation>Triggerverzögerung</translation>
+    </message>
+    <message>
+        <source>Operating mode</source>
+        <translation>Betriebsart</translation>
+    </message>
+    <message>
+        <source>Frames</source>
+        <translation>Frames</translation>
+    </message>
+    <message>
+        <source>Head</source>
+        <translation>Kopf</translation>
+    </message>
+    <message>
+        <source>Heads</source>
+        <translation>Köpfe</translation>
+    </message>
+    <message>
+        <source>Base from opening</source>
+        <translation>Basis aus Öffnung</translation>
+    </message>
+    <message>
+        <source>Gap</source>
+        <translation>Spalt</translation>
+    </message>
+    <message>
+        <source>Panel</source>
+        <translation>Anbauteil</translation>
+    </message>
+    <message>
+        <source>Body</source>
+        <translation>Karosserie</translation>
+    </message>
+    <message>
+        <source>File</source>
+        <translation>Datei</translation>
+    </message>
+    <message>
+        <source>Source</source>
+        <translation>Quelle</translation>
+    </message>
+    <message>
+        <source>Step by step</source>
+        <translation>Schrittweise</translation>
+    </message>
+    <message>
+        <source>Endless</source>
+        <translation>Endlos</translation>
+    </message>
+    <message>
+        <source>From frame</source>
+        <translation>Ab Bild</translation>
+    </message>
+    <message>
+        <source>Recorded time of arrival</source>
+        <translation>Aufgezeichnete Ankunftszeit</translation>
+    </message>
+    <message>
+        <source>Folder</source>
+        <translation>Ordner</translation>
+    </message>
+    <message>
+        <source>Kind</source>
+        <translation>Art</translation>
+    </message>
+    <message>
+        <source>Poses needed</source>
+        <translation>Posen nötig</translation>
+    </message>
+    <message>
+        <source>Layout</source>
+        <translation>Aufbau</translation>
+    </message>
+    <message>
+        <source>Unit</source>
+        <translation>Einheit</translation>
+    </message>
+    <message>
+        <source>Poses</source>
+        <translation>Posen</translation>
+    </message>
+    <message>
+        <source>Pose convention</source>
+        <translation>Posenkonvention</translation>
+    </message>
+    <message>
+        <source>Unit of poses</source>
+        <translation>Einheit der Posen</translation>
+    </message>
+    <message>
+        <source>Angles of poses</source>
+        <translation>Winkel der Posen</translation>
+    </message>
+    <message>
+        <source>Colour channel</source>
+        <translation>Farbkanal</translation>
+    </message>
+    <message>
+        <source>Model</source>
+        <translation>Modell</translation>
+    </message>
+    <message>
+        <source>Vendor</source>
+        <translation>Hersteller</translation>
+    </message>
+    <message>
+        <source>Takes frames</source>
+        <translation>Nimmt Frames an</translation>
+    </message>
+    <message>
+        <source>Brand</source>
+        <translation>Marke</translation>
+    </message>
+    <message>
+        <source>Address</source>
+        <translation>Adresse</translation>
+    </message>
+    <message>
+        <source>Name of the device</source>
+        <translation>Name des Geräts</translation>
+    </message>
+    <message>
+        <source>Addresses asked</source>
+        <translation>Gefragte Adressen</translation>
+    </message>
+    <message>
+        <source>Part of the image</source>
+        <translation>Bildausschnitt</translation>
+    </message>
+    <message>
+        <source>First column</source>
+        <translation>Erste Spalte</translation>
+    </message>
+    <message>
+        <source>First row</source>
+        <translation>Erste Zeile</translation>
+    </message>
+    <message>
+        <source>Triggered by the robot</source>
+        <translation>Vom Roboter getriggert</translation>
+    </message>
+    <message>
+        <source>Features of the camera</source>
+        <translation>Merkmale der Kamera</translation>
+    </message>
+    <message>
+        <source>Chunks</source>
+        <translation>Chunks</translation>
+    </message>
+    <message>
+        <source>Range image</source>
+        <translation>Höhenbild</translation>
+    </message>
+    <message>
+        <source>Scale of x</source>
+        <translation>Maßstab x</translation>
+    </message>
+    <message>
+        <source>Offset of x</source>
+        <translation>Versatz x</translation>
+    </message>
+    <message>
+        <source>Scale of z</source>
+        <translation>Maßstab z</translation>
+    </message>
+    <message>
+        <source>Offset of z</source>
+        <translation>Versatz z</translation>
+    </message>
+    <message>
+        <source>Value without return</source>
+        <translation>Wert ohne Echo</translation>
+    </message>
+    <message>
+        <source>Packet size</source>
+        <translation>Paketgröße</translation>
+    </message>
+    <message>
+        <source>Kernel ring for packets</source>
+        <translation>Ringpuffer des Kernels</translation>
+    </message>
+    <message>
+        <source>Lost packets asked again</source>
+        <translation>Verlorene Pakete nachfordern</translation>
+    </message>
+    <message>
+        <source>Time-out of a packet</source>
+        <translation>Zeitgrenze eines Pakets</translation>
+    </message>
+    <message>
+        <source>Time-out of a frame</source>
+        <translation>Zeitgrenze eines Bildes</translation>
+    </message>
+    <message>
+        <source>Socket buffer</source>
+        <translation>Socketpuffer</translation>
+    </message>
+    <message>
+        <source>Time-out</source>
+        <translation>Zeitgrenze</translation>
+    </message>
+    <message>
+        <source>Heartbeat</source>
+        <translation>Lebenszeichen</translation>
+    </message>
+    <message>
+        <source>First wait to reconnect</source>
+        <translation>Erste Wartezeit zum Neuverbinden</translation>
+    </message>
+    <message>
+        <source>Longest wait to reconnect</source>
+        <translation>Längste Wartezeit zum Neuverbinden</translation>
+    </message>
+    <message>
+        <source>Port of commands</source>
+        <translation>Port der Befehle</translation>
+    </message>
+    <message>
+        <source>Output</source>
+        <translation>Ausgabe</translation>
+    </message>
+    <message>
+        <source>Port of data</source>
+        <translation>Port der Daten</translation>
+    </message>
+    <message>
+        <source>Points</source>
+        <translation>Punkte</translation>
+    </message>
+    <message>
+        <source>Format</source>
+        <translation>Format</translation>
+    </message>
+    <message>
+        <source>Delimiter</source>
+        <translation>Trennzeichen</translation>
+    </message>
+    <message>
+        <source>End of line</source>
+        <translation>Zeilenende</translation>
+    </message>
+    <message>
+        <source>Time-out of the start</source>
+        <translation>Zeitgrenze des Starts</translation>
+    </message>
+    <message>
+        <source>Listens on</source>
+        <translation>Horcht auf</translation>
+    </message>
+    <message>
+        <source>Port</source>
+        <translation>Port</translation>
+    </message>
+    <message>
+        <source>Robot's address</source>
+        <translation>Adresse des Roboters</translation>
+    </message>
+    <message>
+        <source>Trigger output</source>
+        <translation>Triggerausgang</translation>
+    </message>
+    <message>
+        <source>Flag of the connection</source>
+        <translation>Flag der Verbindung</translation>
+    </message>
+    <message>
+        <source>Flag of commands</source>
+        <translation>Flag der Befehle</translation>
+    </message>
+    <message>
+        <source>Looks every</source>
+        <translation>Fragt alle</translation>
+    </message>
+    <message>
+        <source>Cycle</source>
+        <translation>Takt</translation>
+    </message>
+    <message>
+        <source>Time-out of a ramp</source>
+        <translation>Zeitgrenze einer Rampe</translation>
+    </message>
+    <message>
+        <source>Base from reference</source>
+        <translation>Basis aus Bezug</translation>
+    </message>
+    <message>
+        <source>Flange from TCP</source>
+        <translation>Flansch aus TCP</translation>
+    </message>
+    <message>
+        <source>Speed of turning</source>
+        <translation>Drehgeschwindigkeit</translation>
+    </message>
+    <message>
+        <source>Acceleration</source>
+        <translation>Beschleunigung</translation>
+    </message>
+    <message>
+        <source>Acceleration of turning</source>
+        <translation>Drehbeschleunigung</translation>
+    </message>
+    <message>
+        <source>Late packets allowed</source>
+        <translation>Erlaubte verspätete Pakete</translation>
+    </message>
+    <message>
+        <source>Silence that ends a session</source>
+        <translation>Stille, die eine Sitzung beendet</translation>
+    </message>
+    <message>
+        <source>Fastest path</source>
+        <translation>Schnellste Bahn</translation>
+    </message>
+    <message>
+        <source>Following tolerance</source>
+        <translation>Schlepptoleranz</translation>
+    </message>
+    <message>
+        <source>Following tolerance, turn</source>
+        <translation>Schlepptoleranz, Drehung</translation>
+    </message>
+    <message>
+        <source>May miss it for</source>
+        <translation>Darf sie verfehlen für</translation>
+    </message>
+    <message>
+        <source>Measuring program</source>
+        <translation>Messprogramm</translation>
+    </message>
+    <message>
+        <source>Driver</source>
+        <translation>Treiber</translation>
+    </message>
+    <message>
+        <source>Settings</source>
+        <translation>Einstellungen</translation>
+    </message>
+    <message>
+        <source>Reference frame</source>
+        <translation>Bezugsframe</translation>
+    </message>
+    <message>
+        <source>SENTYPE</source>
+        <translation>SENTYPE</translation>
+    </message>
+    <message>
+        <source>Decimals</source>
+        <translation>Nachkommastellen</translation>
+    </message>
+    <message>
+        <source>Output: path runs</source>
+        <translation>Ausgang: Bahn läuft</translation>
+    </message>
+    <message>
+        <source>Output: path released</source>
+        <translation>Ausgang: Bahn freigegeben</translation>
+    </message>
+    <message>
+        <source>Port of the dashboard</source>
+        <translation>Port des Dashboards</translation>
+    </message>
+    <message>
+        <source>Time-out of a move</source>
+        <translation>Zeitgrenze einer Bewegung</translation>
+    </message>
+    <message>
+        <source>Frequency</source>
+        <translation>Frequenz</translation>
+    </message>
+    <message>
+        <source>First register</source>
+        <translation>Erstes Register</translation>
+    </message>
+    <message>
+        <source>Tool</source>
+        <translation>Werkzeug</translation>
+    </message>
+    <message>
+        <source>Load</source>
+        <translation>Last</translation>
+    </message>
+    <message>
+        <source>Mass</source>
+        <translation>Masse</translation>
+    </message>
+    <message>
+        <source>Centre of gravity</source>
+        <translation>Schwerpunkt</translation>
+    </message>
+    <message>
+        <source>Inertia, kg m²</source>
+        <translation>Trägheit, kg m²</translation>
+    </message>
+    <message>
+        <source>Axes</source>
+        <translation>Achsen</translation>
+    </message>
+    <message>
+        <source>TCP from sensor</source>
+        <translation>TCP aus Sensor</translation>
+    </message>
+    <message>
+        <source>Line's address</source>
+        <translation>Adresse der Linie</translation>
+    </message>
+    <message>
+        <source>Unit ID</source>
+        <translation>Gerätenummer</translation>
+    </message>
+    <message>
+        <source>Connections</source>
+        <translation>Verbindungen</translation>
+    </message>
+    <message>
+        <source>Closed when idle for</source>
+        <translation>Schließt bei Ruhe nach</translation>
+    </message>
+    <message>
+        <source>Started by</source>
+        <translation>Gestartet von</translation>
+    </message>
+    <message>
+        <source>Time-out of a call</source>
+        <translation>Zeitgrenze eines Aufrufs</translation>
+    </message>
+    <message>
+        <source>Time-out of the start's end</source>
+        <translation>Zeitgrenze für das Ende des Starts</translation>
+    </message>
+    <message>
+        <source>Time-out of the heartbeat</source>
+        <translation>Zeitgrenze des Lebenszeichens</translation>
+    </message>
+    <message>
+        <source>Read from address</source>
+        <translation>Liest ab Adresse</translation>
+    </message>
+    <message>
+        <source>Written from address</source>
+        <translation>Schreibt ab Adresse</translation>
+    </message>
+    <message>
+        <source>Group</source>
+        <translation>Gruppe</translation>
+    </message>
+    <message>
+        <source>Station</source>
+        <translation>Station</translation>
+    </message>
+    <message>
+        <source>Client ID</source>
+        <translation>Client-ID</translation>
+    </message>
+    <message>
+        <source>User name</source>
+        <translation>Benutzername</translation>
+    </message>
+    <message>
+        <source>Variable with the password</source>
+        <translation>Variable mit dem Passwort</translation>
+    </message>
+    <message>
+        <source>File with the password</source>
+        <translation>Datei mit dem Passwort</translation>
+    </message>
+    <message>
+        <source>Encrypted</source>
+        <translation>Verschlüsselt</translation>
+    </message>
+    <message>
+        <source>Certificates of authorities</source>
+        <translation>Zertifikate der Stellen</translation>
+    </message>
+    <message>
+        <source>Own certificate</source>
+        <translation>Eigenes Zertifikat</translation>
+    </message>
+    <message>
+        <source>Key of the certificate</source>
+        <translation>Schlüssel des Zertifikats</translation>
+    </message>
+    <message>
+        <source>Keepalive</source>
+        <translation>Lebenszeichen alle</translation>
+    </message>
+    <message>
+        <source>Queue</source>
+        <translation>Warteschlange</translation>
+    </message>
+    <message>
+        <source>Base</source>
+        <translation>Basis</translation>
+    </message>
+    <message>
+        <source>blue</source>
+        <translation>blau</translation>
+    </message>
+    <message>
+        <source>green</source>
+        <translation>grün</translation>
+    </message>
+    <message>
+        <source>red</source>
+        <translation>rot</translation>
+    </message>
+    <message>
+        <source>red without white</source>
+        <translation>Rot ohne Weiß</translation>
+    </message>
+    <message>
+        <source>grey</source>
+        <translation>grau</translation>
+    </message>
+    <message>
+        <source>images</source>
+        <translation>Bilder</translation>
+    </message>
+    <message>
+        <source>profiles</source>
+        <translation>Profile</translation>
+    </message>
+    <message>
+        <source>line</source>
+        <translation>Linie</translation>
+    </message>
+    <message>
+        <source>plate</source>
+        <translation>Platte</translation>
+    </message>
+    <message>
+        <source>sphere</source>
+        <translation>Kugel</translation>
+    </message>
+    <message>
+        <source>triangular body</source>
+        <translation>Dreieckkörper</translation>
+    </message>
+    <message>
+        <source>path</source>
+        <translation>Bahn</translation>
+    </message>
+    <message>
+        <source>absolute</source>
+        <translation>absolut</translation>
+    </message>
+    <message>
+        <source>relative</source>
+        <translation>relativ</translation>
+    </message>
+    <message>
+        <source>ASCII</source>
+        <translation>ASCII</translation>
+    </message>
 </context>
 <context>
     <name>main</name>

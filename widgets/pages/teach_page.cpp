@@ -32,7 +32,8 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
     make_feature(*in);
     light_ = new SpotLightPanel(desk_);
     in->addWidget(light_);
-    connect(light_, &SpotLightPanel::edited, this, [this](const Expected<void>& result) { done(result); });
+    connect(light_, &SpotLightPanel::refused, this,
+            [this](const Error& error) { done(tl::unexpected(error)); });
     make_reference(*in);
     make_fields(*in);
     box().addStretch(1);

@@ -9,6 +9,7 @@
 #include "core/calibration/nozzle/wrong_touches.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/statistics.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
@@ -149,7 +150,7 @@ HoldOut hold_out(const WrongTouches& found) {
 
 void state_tip(const TouchSet& set, const TouchFit& fit, const NozzleOptions& options, NozzleResult& result) {
     const double student =
-        fit.estimated ? student_quantile(0.975, std::max(1.0, fit.freedom)) / 1.959963984540054 : 1;
+        fit.estimated ? student_quantile(0.975, std::max(1.0, fit.freedom)) / kNormal95 : 1;
     const Eigen::Vector3d tip = fit.state.head<3>();
     const Eigen::Matrix3d turn = options.programmed ? Eigen::Matrix3d(options.programmed->linear())
                                                     : Eigen::Matrix3d(Eigen::Matrix3d::Identity());

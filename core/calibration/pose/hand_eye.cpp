@@ -324,7 +324,7 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
         report.poses[i].rms_mm = residual_mm(chain, i, x, y).norm();
         report.poses[i].deg = deg_from_rad(residual_rad(chain, i, x, y).norm());
     }
-    const double student = student_quantile(0.975, std::max(1.0, 6 * n - 12)) / 1.959964;
+    const double student = student_quantile(0.975, std::max(1.0, 6 * n - 12)) / kNormal95;
     const Matrix12 covariance = known.covariance * student * student;
     result.covariance_x = covariance.topLeftCorner<6, 6>();
     result.covariance_y = covariance.bottomRightCorner<6, 6>();

@@ -11,6 +11,7 @@
 #include "core/calibration/pose_set.h"
 #include "core/calibration/statistics.h"
 #include "core/geometry/decompositions.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
@@ -308,7 +309,7 @@ Expected<PlateResult> calibrate_plate(const std::vector<PlatePoint>& points, con
     result.world_from_plate = fit.pose;
     result.rms_mm = std::sqrt(fit.squares / count);
     result.sigma_mm = options.sigma_mm.value_or(std::sqrt(fit.squares / redundancy));
-    const double student = options.sigma_mm ? 1 : student_quantile(0.975, redundancy) / 1.959964;
+    const double student = options.sigma_mm ? 1 : student_quantile(0.975, redundancy) / kNormal95;
     const Matrix6 unit = inverse_matrix(information_of(pairs.plate, fit.pose, pairs.use));
     result.covariance = unit * (result.sigma_mm * result.sigma_mm * student * student);
     const PairMoments m = moments_of(pairs.world, pairs.plate, pairs.use);

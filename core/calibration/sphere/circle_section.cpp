@@ -1,5 +1,7 @@
 #include "core/calibration/sphere/circle_section.h"
+#include "core/geometry/pose.h"
 #include "core/median.h"
+#include "core/numbers.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -9,6 +11,17 @@
 
 namespace seamwright {
 namespace {
+
+constexpr double kVanishing = 1e-9;  // of a length, a step or a pivot, in millimetres or relative
+// Noise of a profile's z: what is taken where too few points tell, and the least and most that is believed.
+constexpr std::size_t kFewestBends = 8;
+constexpr double kNoiseUntold_mm = 0.05, kLeastProfileNoise_mm = 0.002, kMostNoise_mm = 0.3;
+// Points within so many noises of a circle are its own; the band is never narrower.
+constexpr double kBandNoises = 4, kLeastBand_mm = 0.03, kLeastRefinedBand_mm = 0.02;
+// A triple's circle is rough: it may be beyond the limits by so much, and its arc shorter.
+constexpr double kRoughSmaller = 0.7, kRoughLarger = 1.4, kRoughArcShare = 0.4;
+// A circle that holds this share of all points has been hit many times by the fewest trials.
+constexpr double kClearShare = 0.33;
 
 struct Circle {
     double x = 0, z = 0, r = 0;
@@ -35,15 +48,15 @@ double noise_from_second_differences(const Points& p) {
         if (p.index[k + 1] - p.index[k - 1] != 2) continue;
         d.push_back(std::abs(p.z[k - 1] - 2 * p.z[k] + p.z[k + 1]));
     }
-    if (d.size() < 8) return 0.05;
-    return median(d) / (0.6745 * std::sqrt(6.0));
+    if (d.size() < kFewestBends) return kNoiseUntold_mm;
+    return median(d) * kMadToSigma / std::sqrt(6.0);
 }
 
 bool circle_through(const Points& p, int i, int j, int k, Circle& out) {
     const auto a = static_cast<size_t>(i), b = static_cast<size_t>(j), c = static_cast<size_t>(k);
     const double x1 = p.x[b] - p.x[a], z1 = p.z[b] - p.z[a], x2 = p.x[c] - p.x[a], z2 = p.z[c] - p.z[a];
     const double det = 2 * (x1 * z2 - x2 * z1);
-    if (std::abs(det) < 1e-12) return false;
+    if (std::abs(det) < kVanishing * kVanishing) return false;
     const double q1 = x1 * x1 + z1 * z1, q2 = x2 * x2 + z2 * z2;
     const double cx = (q1 * z2 - q2 * z1) / det, cz = (x1 * q2 - x2 * q1) / det;
     out = {p.x[a] + cx, p.z[a] + cz, std::hypot(cx, cz)};
@@ -84,7 +97,7 @@ double fit(const Points& p, const std::vector<int>& inliers, Circle& c) {
         for (int i : inliers) {
             const auto k = static_cast<size_t>(i);
             const double dx = p.x[k] - c.x, dz = p.z[k] - c.z, d = distance(dx, dz);
-            if (d < 1e-9) return -1;
+            if (d < kVanishing) return -1;
             const Eigen::Vector3d j(-dx / d, -dz / d, -1);
             const double e = d - c.r;
             h.noalias() += j * j.transpose();
@@ -93,7 +106,7 @@ double fit(const Points& p, const std::vector<int>& inliers, Circle& c) {
         }
         const Eigen::LDLT<Eigen::Matrix3d> ldlt(h);
         if (ldlt.info() != Eigen::Success ||
-            ldlt.vectorD().minCoeff() < 1e-9 * static_cast<double>(inliers.size()))
+            ldlt.vectorD().minCoeff() < kVanishing * static_cast<double>(inliers.size()))
             return -1;
         Eigen::Vector3d step = -ldlt.solve(g);
         if (!step.allFinite()) return -1;
@@ -103,12 +116,21 @@ double fit(const Points& p, const std::vector<int>& inliers, Circle& c) {
         c.z += step[1];
         c.r += step[2];
         if (c.r <= 0) return -1;
-        if (step.norm() < 1e-9 * c.r) break;
+        if (step.norm() < kVanishing * c.r) break;
     }
     return std::sqrt(squares / std::max<double>(1, static_cast<double>(inliers.size()) - 3));
 }
 
 }  // namespace
+
+CircleSectionLimits limits_of_sphere(double radius_mm) {
+    // Beyond the radius by a hundredth and what noise does to a small one; a cut nearer to the pole is too flat an arc.
+    constexpr double kLarger = 1.01, kNoise_mm = 0.1, kSmallestShare = 0.12;
+    CircleSectionLimits limits;
+    limits.largest_radius_mm = kLarger * radius_mm + kNoise_mm;
+    limits.smallest_radius_mm = kSmallestShare * radius_mm;
+    return limits;
+}
 
 std::optional<CircleSection> find_circle_section(const Profile& profile, const CircleSectionLimits& limits) {
     Points p;
@@ -120,8 +142,8 @@ std::optional<CircleSection> find_circle_section(const Profile& profile, const C
     }
     const int n = p.size();
     if (n < limits.fewest_points) return std::nullopt;
-    const double noise = std::clamp(noise_from_second_differences(p), 0.002, 0.3);
-    const double band = std::max(4 * noise, 0.03);
+    const double noise = std::clamp(noise_from_second_differences(p), kLeastProfileNoise_mm, kMostNoise_mm);
+    const double band = std::max(kBandNoises * noise, kLeastBand_mm);
 
     // Triples spread over a window of the sensor order: the sphere's points are neighbours, whatever else is
     // there.
@@ -142,8 +164,7 @@ std::optional<CircleSection> find_circle_section(const Profile& profile, const C
     const int stride = std::max(1, n / 160);
     constexpr int kTrials = 400, kFewestTrials = 150;
     for (int trial = 0; trial < kTrials; ++trial) {
-        // A circle that holds a third of all points has been hit many times by then.
-        if (trial >= kFewestTrials && !best.empty() && best.front().score * stride > 0.33 * n) break;
+        if (trial >= kFewestTrials && !best.empty() && best.front().score * stride > kClearShare * n) break;
         const int smallest = std::max(4, n / 25);
         const int window = trial % 4 == 3 ? n : std::min(n, smallest + below(std::max(1, n / 2)));
         if (window < 3) continue;
@@ -153,9 +174,11 @@ std::optional<CircleSection> find_circle_section(const Profile& profile, const C
         const int k = start + std::min(window - 1, 2 * third + below(std::max(1, window - 2 * third)));
         Circle circle;
         if (i == j || j == k || i == k || !circle_through(p, i, j, k, circle)) continue;
-        if (circle.r < 0.7 * limits.smallest_radius_mm || circle.r > 1.4 * limits.largest_radius_mm) continue;
+        if (circle.r < kRoughSmaller * limits.smallest_radius_mm ||
+            circle.r > kRoughLarger * limits.largest_radius_mm)
+            continue;
         const double value = score(p, circle, 2 * band, stride);
-        if (value * stride * step < 0.4 * limits.smallest_arc_rad * circle.r) continue;
+        if (value * stride * step < kRoughArcShare * limits.smallest_arc_rad * circle.r) continue;
         if (best.size() == kKept && value <= best.back().score) continue;
         if (best.size() == kKept) best.pop_back();
         best.insert(std::upper_bound(best.begin(), best.end(), value,
@@ -180,7 +203,7 @@ std::optional<CircleSection> find_circle_section(const Profile& profile, const C
             sigma = fit(p, inliers, c);
             if (sigma < 0) break;
             previous = inliers;
-            width = std::clamp(4 * sigma, 0.02, 2 * band);
+            width = std::clamp(kBandNoises * sigma, kLeastRefinedBand_mm, 2 * band);
         }
         if (sigma < 0 || c.r < limits.smallest_radius_mm || c.r > limits.largest_radius_mm) continue;
         Eigen::Vector2d mean = Eigen::Vector2d::Zero();
@@ -193,8 +216,7 @@ std::optional<CircleSection> find_circle_section(const Profile& profile, const C
         double low = 0, high = 0;
         for (int i : inliers) {
             const auto k = static_cast<size_t>(i);
-            const double angle =
-                std::remainder(std::atan2(p.z[k] - c.z, p.x[k] - c.x) - toward, 2 * 3.14159265358979);
+            const double angle = std::remainder(std::atan2(p.z[k] - c.z, p.x[k] - c.x) - toward, 2 * kPi);
             low = std::min(low, angle);
             high = std::max(high, angle);
         }

@@ -17,6 +17,9 @@ struct CircleSectionLimits {
     int fewest_points = 12;
 };
 
+// What a plane cuts of a sphere of this radius, where it cuts enough of it to fix a centre.
+CircleSectionLimits limits_of_sphere(double radius_mm);
+
 // Circle (x - x_mm)^2 + (z - z_mm)^2 = radius_mm^2 in the sensor plane. noise_mm: standard deviation of the
 // inliers' radial residual. inliers: indices into the profile, ascending.
 struct CircleSection {

@@ -16,6 +16,12 @@ namespace seamwright {
 namespace {
 
 constexpr double kLever_mm = 100;
+constexpr double kSettled_mm = 1e-10;
+constexpr double kLeastNoise_mm = 1e-4;  // keeps noise-free data from looking sure
+// Shares of the radius that the laser must be off the sphere's middle, as expected and as measured, to tell y.
+constexpr double kExpectedOff = 0.2, kMeasuredOff = 0.15;
+// Of chi squared: something has changed; and what one change has to explain, with slack for circles that are not the sphere's.
+constexpr double kChanged = 0.99, kExplained = 0.999, kExplainedSlack = 1.5;
 
 struct Fit {
     Pose change = Pose::Identity();
@@ -79,7 +85,7 @@ Fit fit_change(const std::vector<DriftMeasurement>& list, const std::vector<Eige
             Eigen::Matrix3d(inverse.bottomRightCorner<3, 3>()));
         fit.sigma_mm = std::sqrt(std::max(0.0, shift.eigenvalues()[2]));
         fit.sigma_deg = deg_from_rad(std::sqrt(std::max(0.0, turn.eigenvalues()[2])) / kLever_mm);
-        if (step.norm() < 1e-10) break;
+        if (step.norm() < kSettled_mm) break;
     }
     fit.change = make_pose(rotation, g + u - rotation * g);
     return fit;
@@ -109,10 +115,7 @@ Expected<DriftMeasurement> drift_measurement(const SphereObservation& observatio
     SEAM_OK(check_rigid({observation.base_from_flange}, {observation.id}, "base_from_flange of"));
     if (observation.profile.x_mm.size() != observation.profile.z_mm.size())
         return input_error("the profile has different numbers of x and z", where);
-    CircleSectionLimits limits;
-    limits.largest_radius_mm = 1.01 * radius_mm + 0.1;
-    limits.smallest_radius_mm = 0.12 * radius_mm;
-    const auto circle = find_circle_section(observation.profile, limits);
+    const auto circle = find_circle_section(observation.profile, limits_of_sphere(radius_mm));
     if (!circle)
         return input_error(Text("the profile shows no circle of a sphere with radius {:.3f} mm", radius_mm),
                            where, "let the laser cut the sphere");
@@ -122,7 +125,8 @@ Expected<DriftMeasurement> drift_measurement(const SphereObservation& observatio
         std::sqrt(std::max(0.0, radius_mm * radius_mm - circle->radius_mm * circle->radius_mm));
     // Near the middle of the sphere the circle says next to nothing about y: keep the expected place there,
     // with a sigma that takes no part.
-    const bool off_middle = std::abs(expected.y()) > 0.2 * radius_mm && height > 0.15 * radius_mm;
+    const bool off_middle =
+        std::abs(expected.y()) > kExpectedOff * radius_mm && height > kMeasuredOff * radius_mm;
     const double y = off_middle ? std::copysign(height, expected.y()) : expected.y();
     const Eigen::Vector3d centre(circle->x_mm, y, circle->z_mm);
 
@@ -134,7 +138,7 @@ Expected<DriftMeasurement> drift_measurement(const SphereObservation& observatio
         const Eigen::Vector3d j = Eigen::Vector3d(-dx, -dz, -std::hypot(dx, dz)) / std::hypot(dx, dz);
         h.noalias() += j * j.transpose();
     }
-    const double noise = std::max(circle->noise_mm, 1e-4);
+    const double noise = std::max(circle->noise_mm, kLeastNoise_mm);
     const Eigen::Matrix3d fit = h.inverse() * noise * noise;
     Eigen::Matrix3d to_centre = Eigen::Matrix3d::Zero();  // (x, y, z) from (a, b, rho)
     to_centre(0, 0) = 1;
@@ -148,8 +152,9 @@ Expected<DriftMeasurement> drift_measurement(const SphereObservation& observatio
     measurement.known_base_mm = known_centre_base_mm;
     measurement.measured_flange_mm = stored_flange_from_sensor * centre;
     const Eigen::Matrix3d r = stored_flange_from_sensor.linear();
-    measurement.covariance = r * of_centre * r.transpose() +
-                             (other_sigma_mm * other_sigma_mm + 1e-8) * Eigen::Matrix3d::Identity();
+    measurement.covariance =
+        r * of_centre * r.transpose() +
+        (other_sigma_mm * other_sigma_mm + kLeastNoise_mm * kLeastNoise_mm) * Eigen::Matrix3d::Identity();
     return measurement;
 }
 
@@ -196,7 +201,7 @@ Expected<DriftResult> check_drift(const std::vector<DriftMeasurement>& measureme
     };
     const double rows = 3 * static_cast<double>(measurements.size());
     statistics(Pose::Identity(), result.chi_squared, result.rms_before_mm, true);
-    result.chi_squared_limit = chi_squared_quantile(0.99, rows);
+    result.chi_squared_limit = chi_squared_quantile(kChanged, rows);
 
     const Fit fit = fit_change(measurements, weight, 20 * limits.translation_mm);
     result.change = fit.change;
@@ -211,7 +216,8 @@ Expected<DriftResult> check_drift(const std::vector<DriftMeasurement>& measureme
     double after = 0;
     statistics(fit.change, after, result.rms_after_mm, false);
     const double freedom = rows - fit.determined;
-    const bool explained = freedom < 1 || after <= chi_squared_quantile(0.999, freedom) * 1.5;
+    const bool explained =
+        freedom < 1 || after <= chi_squared_quantile(kExplained, freedom) * kExplainedSlack;
 
     auto& report = result.report;
     add_pose(report, fit.change);

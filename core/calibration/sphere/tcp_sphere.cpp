@@ -14,6 +14,7 @@
 #include "core/calibration/sphere/tcp_sphere_solve.h"
 #include "core/calibration/statistics.h"
 #include "core/median.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
@@ -26,6 +27,12 @@ constexpr double kNoiseFloor_mm =
 constexpr double kUndeterminedSigma_mm = 2.0;             // a direction weaker than this is not determined
 constexpr double kGoodTcp_mm = 0.1, kUsableTcp_mm = 0.5;  // three sigma at the working distance
 constexpr double kPoorFit_mm = 0.5;
+constexpr double kLooksAtRadius_mm = 0.1;  // a fit worse than this may be one to a wrong radius
+// Another radius is told where it leaves this share of the disagreement and differs by so much.
+constexpr double kMuchBetter = 0.2, kOtherRadius_mm = 0.05;
+// Of a profile's steps in x, and of the profiles: so many one way make an order.
+constexpr double kOneWay = 0.8;
+constexpr double kBulges = 0.15;  // mean_side of a cap that is seen from one side
 
 Expected<void> check_input(const std::vector<SphereObservation>& observations,
                            const TcpSphereOptions& options) {
@@ -104,8 +111,8 @@ MirroredAxis judge_axes(const std::vector<Section>& sections,
             steps += x[b] > x[a] ? 1 : -1;
         }
         const double share = steps / std::max(1.0, section.count() - 1);
-        descending += share < -0.8 ? 1 : 0;
-        ascending += share > 0.8 ? 1 : 0;
+        descending += share < -kOneWay ? 1 : 0;
+        ascending += share > kOneWay ? 1 : 0;
     }
     if (used == 0) return MirroredAxis::none;
     if (options.nominal_flange_from_sensor) {
@@ -130,14 +137,14 @@ MirroredAxis judge_axes(const std::vector<Section>& sections,
         }
         if (plain < rad_from_deg(45)) return MirroredAxis::none;
     }
-    if (side / used < -0.15) {
+    if (side / used < -kBulges) {
         notices.push_back(
             "the profile's z axis is mirrored or counts away from the sensor: the sphere's visible cap lies "
             "towards -z; "
             "flange_from_sensor holds for the profile as delivered, with its Y axis reversed");
         return MirroredAxis::z;
     }
-    if (descending > 0.8 * used && ascending == 0) {
+    if (descending > kOneWay * used && ascending == 0) {
         notices.push_back(
             "the profile's x axis looks mirrored: x falls along the order of the points in every profile; "
             "flange_from_sensor holds for the profile as delivered, with its Y axis reversed if x is indeed "
@@ -257,12 +264,7 @@ std::vector<Section> find_sections(const std::vector<SphereObservation>& observa
 }
 
 CircleSectionLimits section_limits(const std::optional<double>& radius_mm) {
-    CircleSectionLimits limits;
-    if (radius_mm) {
-        limits.largest_radius_mm = 1.01 * *radius_mm + 0.1;
-        limits.smallest_radius_mm = 0.12 * *radius_mm;
-    }
-    return limits;
+    return radius_mm ? limits_of_sphere(*radius_mm) : CircleSectionLimits();
 }
 
 // Of the cuts in use. Rims of other things can be rounder than the sphere is large: the second largest bounds the radius.
@@ -296,7 +298,7 @@ Matrix10 covariance_of(const std::vector<Section>& sections, const Model& model,
     const int unknowns = radius_free ? 10 : 9;
     if (!noise.poses_disagree)
         return inverse * system.meat * inverse * (system.count / std::max(1.0, system.count - unknowns));
-    const double student = student_quantile(0.975, noise.redundancy) / 1.959964;
+    const double student = student_quantile(0.975, noise.redundancy) / kNormal95;
     return student * student *
            (inverse * noise.point_variance +
             covariance_of_centres(sections, model, inverse, noise.centre_variance));
@@ -307,7 +309,8 @@ double better_radius(const std::vector<Section>& sections, const Model& model, d
     Model free_model = model;
     const double free_cost =
         solve_reduced(sections, free_model, true, std::numeric_limits<double>::infinity(), 100);
-    return free_cost < 0.2 * mean_disagreement && std::abs(free_model.radius - model.radius) > 0.05
+    return free_cost < kMuchBetter * mean_disagreement &&
+                   std::abs(free_model.radius - model.radius) > kOtherRadius_mm
                ? free_model.radius
                : kNaN;
 }
@@ -322,7 +325,8 @@ Judgement judge_sphere(const SphereFit& fit, TcpSphereResult& result) {
     const double three_sigma = 3 * result.working_sigma_mm;
     const double hold_out = result.report.hold_out.rms_mm;
     // With less than six poses left a wrong one among them still fits; leaving it out shows it.
-    const double hold_out_limit = fit.used < kTcpSphereFewestPoses ? 0.3 : 2 * kPoorFit_mm;
+    constexpr double kFewPosesHoldOut_mm = 0.3;
+    const double hold_out_limit = fit.used < kTcpSphereFewestPoses ? kFewPosesHoldOut_mm : 2 * kPoorFit_mm;
     const bool bad_fit = result.rms_mm > kPoorFit_mm || hold_out > hold_out_limit;
     result.fits = !std::isfinite(fit.better_radius) && !fit.few_agree && !bad_fit;
     if (std::isfinite(fit.better_radius))
@@ -477,7 +481,7 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
                  "profiles, and the stated sigma counts that in",
                  std::sqrt(noise.ratio)));
     SphereFit fit{used, used < 0.5 * static_cast<double>(candidates), kNaN, model.radius};
-    if (!radius_free && noise.poses_disagree && result.rms_mm > 0.1)
+    if (!radius_free && noise.poses_disagree && result.rms_mm > kLooksAtRadius_mm)
         fit.better_radius = better_radius(sections, model, mean_disagreement);
     result.report.judgement = judge_sphere(fit, result);
     return result;

@@ -14,6 +14,7 @@ namespace seamwright::tcp_sphere {
 namespace {
 
 constexpr double kLever_mm = 100;
+constexpr double kProposedTurn_deg = 25;
 
 // d(t, w, c, r) / d(working point, lever * w, c, r): the working point is R s + t with fixed s.
 Matrix10 scaled_basis(const Model& model, const Eigen::Vector3d& working_point_sensor) {
@@ -122,7 +123,8 @@ std::vector<Text> degenerate_pose_words(const std::vector<Section>& sections, co
                      "half the field of view",
                      axis_name(eigen.eigenvectors().col(2))));
     }
-    if (radius_free && largest_cut - smallest_cut < 0.1 * largest_cut)
+    constexpr double kCutsAlike = 0.1;
+    if (radius_free && largest_cut - smallest_cut < kCutsAlike * largest_cut)
         words.push_back(
             "all profiles cut the sphere at about the same height, which leaves its radius free: give the "
             "radius, or cut the "
@@ -204,7 +206,7 @@ std::vector<PoseProposal> propose_poses(const std::vector<Section>& sections, co
     };
     add(base_from_sensor, "keep the orientation");
     for (const auto& turn : turns)
-        for (const double angle_deg : {25.0, -25.0})
+        for (const double angle_deg : {kProposedTurn_deg, -kProposedTurn_deg})
             add(base_from_sensor * rotation_exp(turn.axis * rad_from_deg(angle_deg)),
                 Text("turn the sensor about its own {} axis by {:+.0f} degrees", turn.name, angle_deg));
 

@@ -105,7 +105,8 @@ bool leave_out_wrong_pose(std::vector<Section>& sections, const Model& model, bo
 // A profile in which something else was taken for the sphere: look again, only near where the sphere must be.
 void look_again(Section& section, const Model& model, const CircleSectionLimits& limits) {
     const Eigen::Vector3d s = centre_in_sensor(section, model);
-    if (std::abs(s.y()) > 0.98 * model.radius) return;
+    constexpr double kAtThePole = 0.98;  // of the radius: nothing of the sphere is cut there
+    if (std::abs(s.y()) > kAtThePole * model.radius) return;
     Profile near = *section.profile;
     for (size_t i = 0; i < near.size(); ++i) {
         const double dx = near.x_mm[i] - s.x(), dz = near.z_mm[i] - s.z();

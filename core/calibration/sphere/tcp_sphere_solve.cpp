@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -11,6 +12,20 @@
 
 namespace seamwright::tcp_sphere {
 namespace {
+
+// A floor under scales and pivots, relative to a unit diagonal: directions without any information stay still.
+constexpr double kFloor = 1e-12;
+constexpr double kDisagreementTold = 0.99;  // of chi squared: the poses are worse than the profiles
+// A section agrees with a solution that misses its points by no more than this.
+constexpr double kAgrees_mm = 0.2;
+// Starts in one basin: of the coarse search, and once they have been settled.
+constexpr double kSameBasin_rad = 0.05, kSameBasin_mm = 10, kSameMinimum_rad = 0.02, kSameMinimum_mm = 5;
+// A free radius is looked for from the largest cut on.
+constexpr std::array<double, 3> kRadiusStarts{1.01, 1.15, 1.5};
+// Scales of the loss, in millimetre squared: wide while a start is coarse, narrow when what does not belong is to go.
+constexpr std::array<double, 3> kSettlingScales{10.0, 3.0, 1.0};
+constexpr std::array<double, 2> kSubsetScales{1.0, 0.3};
+constexpr double kReweight_mm = 0.1;  // residuals below this count alike in a start
 
 void update_statistics(Section& section) {
     const double a = section.circle.x_mm, b = section.circle.z_mm, rho = section.circle.radius_mm;
@@ -26,7 +41,7 @@ void update_statistics(Section& section) {
         squares += nu * nu;
     }
     const double scale = 1 / (4 * rho * rho);
-    normal.diagonal() *= 1 + 1e-12;
+    normal.diagonal() *= 1 + kFloor;
     const Eigen::LLT<Eigen::Matrix3d> llt(normal);
     section.best = -llt.solve(right);
     section.own_squares = std::max(0.0, (squares + right.dot(section.best)) * scale);
@@ -45,9 +60,9 @@ Vector10 damped_step(const Matrix10& information, const Vector10& gradient, doub
         g[9] = 0;
     }
     // Scaled to a unit diagonal, with a floor that keeps directions without any information still.
-    const Vector10 scale = h.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
+    const Vector10 scale = h.diagonal().cwiseMax(kFloor).cwiseSqrt().cwiseInverse();
     h = scale.asDiagonal() * h * scale.asDiagonal();
-    h.diagonal().array() += lambda + 1e-13;
+    h.diagonal().array() += lambda + kFloor / 10;
     return -(scale.asDiagonal() * solve_symmetric(h, scale.asDiagonal() * g));
 }
 
@@ -133,19 +148,19 @@ Model start_for_axis(const std::vector<Section>& sections, const Eigen::Vector3d
             h.noalias() += weight[i] * a.transpose() * a;
             g.noalias() += weight[i] * a.transpose() * right;
         }
-        const Vector7 scale = h.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
+        const Vector7 scale = h.diagonal().cwiseMax(kFloor).cwiseSqrt().cwiseInverse();
         h = scale.asDiagonal() * h * scale.asDiagonal();
         h.diagonal().array() += 1e-9;
         solution = scale.asDiagonal() * solve_symmetric(h, scale.asDiagonal() * g);
         for (size_t i = 0; i < sections.size(); ++i) {
             if (!sections[i].used) continue;
             rows(sections[i], a, right);
-            weight[i] = 1 / ((a * solution - right).norm() + 0.1);
+            weight[i] = 1 / ((a * solution - right).norm() + kReweight_mm);
         }
     }
     const double length = std::hypot(solution[0], solution[1]);
-    const double cosine = length > 1e-12 ? solution[0] / length : 1,
-                 sine = length > 1e-12 ? solution[1] / length : 0;
+    const double cosine = length > kFloor ? solution[0] / length : 1,
+                 sine = length > kFloor ? solution[1] / length : 0;
     // x axis: cos e1 + sin e2; z axis = x axis cross n: sin e1 - cos e2.
     Model model;
     model.radius = radius;
@@ -274,7 +289,10 @@ namespace {
 // All minima worth a look from every assumed axis, best first.
 std::vector<Start> search(const std::vector<Section>& sections, double radius, bool radius_free) {
     std::vector<double> radii{radius};
-    if (radius_free) radii = {radius * 1.01, radius * 1.15, radius * 1.5};
+    if (radius_free) {
+        radii.clear();
+        for (const double factor : kRadiusStarts) radii.push_back(radius * factor);
+    }
     constexpr int kDirections = 96;
     std::vector<Start> coarse;
     for (const double r : radii) {
@@ -293,13 +311,15 @@ std::vector<Start> search(const std::vector<Section>& sections, double radius, b
     };
     for (auto& start : coarse) {
         // Most starts have already run into a minimum that is known.
-        if (std::any_of(found.begin(), found.end(),
-                        [&](const Start& other) { return same(start, other, 0.05, 10); }))
+        if (std::any_of(found.begin(), found.end(), [&](const Start& other) {
+                return same(start, other, kSameBasin_rad, kSameBasin_mm);
+            }))
             continue;
-        for (const double scale : {10.0, 3.0, 1.0})
+        for (const double scale : kSettlingScales)
             start.cost = solve_reduced(sections, start.model, radius_free, scale, 25);
-        const bool known = std::any_of(found.begin(), found.end(),
-                                       [&](const Start& other) { return same(start, other, 0.02, 5); });
+        const bool known = std::any_of(found.begin(), found.end(), [&](const Start& other) {
+            return same(start, other, kSameMinimum_rad, kSameMinimum_mm);
+        });
         if (!known && std::isfinite(start.cost)) found.push_back(start);
     }
     std::sort(found.begin(), found.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
@@ -310,7 +330,8 @@ std::vector<Start> search(const std::vector<Section>& sections, double radius, b
 int agreeing(const std::vector<Section>& sections, const Model& model) {
     int count = 0;
     for (const auto& section : sections)
-        count += section.used && disagreement(section, model) / section.count() < 0.2 * 0.2 ? 1 : 0;
+        count +=
+            section.used && disagreement(section, model) / section.count() < kAgrees_mm * kAgrees_mm ? 1 : 0;
     return count;
 }
 
@@ -338,7 +359,7 @@ std::vector<Start> global_start(const std::vector<Section>& sections, double rad
         }
         for (auto& start : search(subset, radius, radius_free)) {
             if (agreeing(subset, start.model) < static_cast<int>(few)) continue;
-            for (const double scale : {1.0, 0.3})
+            for (const double scale : kSubsetScales)
                 start.cost = solve_reduced(sections, start.model, radius_free, scale, 25);
             const int count = agreeing(sections, start.model);
             if (count <= std::max(best, static_cast<int>(few) - 1)) continue;
@@ -481,8 +502,9 @@ NoiseLevels noise_levels(const std::vector<Section>& sections, const Model& mode
     noise.redundancy = 3 * used - (radius_free ? 10 : 9);
     if (noise.redundancy < 1) return noise;
     if (noise.point_variance > 0) noise.ratio = between / noise.redundancy / noise.point_variance;
-    noise.poses_disagree = noise.ratio > chi_squared_quantile(0.99, noise.redundancy) / noise.redundancy &&
-                           between / noise.redundancy > 1e-12;
+    noise.poses_disagree =
+        noise.ratio > chi_squared_quantile(kDisagreementTold, noise.redundancy) / noise.redundancy &&
+        between / noise.redundancy > kFloor;
     if (noise.poses_disagree && shown > 0)
         noise.centre_variance = std::max(0.0, between - noise.point_variance * noise.redundancy) / shown;
     return noise;
@@ -513,9 +535,9 @@ double solve_points(const std::vector<Section>& sections, Model& model, bool rad
                 gain = system.squares - after.squares;
                 model = next;
                 moved = step.cwiseAbs().maxCoeff() > 1e-11;
-                const bool small = gain <= 1e-12 * system.squares;
+                const bool small = gain <= kFloor * system.squares;
                 system = after;
-                lambda = std::max(1e-12, lambda * 0.1);
+                lambda = std::max(kFloor, lambda * 0.1);
                 if (small) moved = false;
                 break;
             }

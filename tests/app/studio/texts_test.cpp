@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <regex>
 #include <set>
@@ -13,6 +14,7 @@
 #include "core/features/feature.h"
 #include "core/features/kinds/feature_registry.h"
 #include "core/text.h"
+#include "devices/line/line_link.h"
 #include "devices/registry.h"
 #include "projects/measure/fields.h"
 #include "projects/model/run.h"
@@ -214,8 +216,25 @@ TEST(Texts, WhatTheLayersBelowSayHasAWord) {
     }
     for (const auto& field : spot_fields()) setting(field.info);
     for (const auto& field : region_fields()) setting(field.info);
-    for (const auto& driver : sensor_drivers()) sentence(driver.help);
-    for (const auto& driver : robot_drivers()) sentence(driver.help);
+    const std::function<void(const SettingTable&)> of_driver = [&](const SettingTable& table) {
+        for (const SettingInfo& info : table) {
+            EXPECT_TRUE(has_word(info.name)) << info.name << " is missing in widgets/words.cpp";
+            for (const std::string& choice : info.choices)
+                EXPECT_TRUE(choice.empty() || has_word(choice))
+                    << choice << " is missing in widgets/words.cpp";
+            if (!info.help.empty()) sentence(info.help);
+            of_driver(info.fields);
+        }
+    };
+    for (const auto& driver : sensor_drivers()) {
+        sentence(driver.help);
+        of_driver(driver.settings());
+    }
+    for (const auto& driver : robot_drivers()) {
+        sentence(driver.help);
+        of_driver(driver.settings());
+    }
+    for (const auto& protocol : line_protocols()) of_driver(protocol.settings());
     for (int i = 0; i <= static_cast<int>(SpotStatus::no_feature); ++i)
         EXPECT_TRUE(has_word(to_string(static_cast<SpotStatus>(i))));
     for (const auto status : {PushStatus::not_pushed, PushStatus::written, PushStatus::failed,

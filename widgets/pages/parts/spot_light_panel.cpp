@@ -77,7 +77,7 @@ void SpotLightPanel::refresh(const Spot* spot) {
 }
 
 void SpotLightPanel::edit(Spot after, const QString& what) {
-    emit edited(desk_.edit(after, what));
+    if (const auto done = desk_.edit(after, what); !done) emit refused(done.error());
 }
 
 void SpotLightPanel::take(const Spot& asked, const FoundLight& found) {

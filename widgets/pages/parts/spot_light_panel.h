@@ -20,7 +20,7 @@ class SpotLightPanel : public QWidget {
     void refresh(const Spot* spot);  // nullptr: none is selected
 
   signals:
-    void edited(const tl::expected<void, seamwright::Error>& result);
+    void refused(const seamwright::Error& error);  // an edit
 
   private:
     void take(const Spot& asked, const FoundLight& found);

@@ -71,6 +71,16 @@ bool ContourPitch::is_gap(double dx, double dz) const {
     return std::hypot(dx, dz) > 6 * distance && std::abs(dx) > 3 * along_x;
 }
 
+bool ContourPitch::is_step(std::span<const double> x, std::span<const double> z, std::size_t at,
+                           double sigma_mm) const {
+    constexpr double kLeast = 2.5, kLeastSigmas = 8, kLevel = 0.35;
+    if (at < 1 || at + 2 >= x.size()) return false;
+    const double dx = x[at + 1] - x[at], rise = std::abs(z[at + 1] - z[at]);
+    return rise > kLeastSigmas * sigma_mm && std::hypot(dx, rise) > kLeast * distance &&
+           std::abs(dx) <= 1.5 * along_x && std::abs(z[at] - z[at - 1]) < kLevel * rise &&
+           std::abs(z[at + 2] - z[at + 1]) < kLevel * rise;
+}
+
 ContourPitch contour_pitch(std::span<const double> x, std::span<const double> z,
                            std::vector<double>& scratch) {
     ContourPitch pitch;
@@ -119,7 +129,8 @@ void ContourModel::build(const Profile& profile) {
     for (std::size_t i = 0; i + 1 < n; ++i) {
         const double dx = x_[i + 1] - x_[i], dz = z_[i + 1] - z_[i];
         if (pitch_.is_gap(dx, dz)) continue;
-        link_[i] = !pitch_.is_wall(dx, dz) ? 1 : std::hypot(dx, dz) <= highest_wall ? 2 : 0;
+        const bool wall = pitch_.is_wall(dx, dz) || pitch_.is_step(x_, z_, i, sigma_);
+        link_[i] = !wall ? 1 : std::hypot(dx, dz) <= highest_wall ? 2 : 0;
     }
     for (std::size_t i = 0, first = 0; i < n; ++i)
         if (link_[i] != 1) {
@@ -232,7 +243,9 @@ void ContourModel::fit_edges() {
                     const int first = places[place];
                     if (first < first_allowed || first + count - 1 > last_allowed) continue;
                     if (place > 0 && first == centred) continue;
-                    bool here = false;
+                    bool here = false, parabola = false, straight = false;
+                    Edge bent{};
+                    double bent_residual2 = 0;
                     const Window moments = window(first, count);
                     for (int degree = 2; degree >= 1; --degree) {
                         Edge edge{};
@@ -243,12 +256,21 @@ void ContourModel::fit_edges() {
                         // line, where it does, has four ninths of the parabola's variance.
                         if (bend > (degree == 1 ? kLineBend : kParabolaBend) * sigma_) continue;
                         here = true;
+                        (degree == 2 ? parabola : straight) = true;
+                        if (degree == 2) bent = edge, bent_residual2 = residual2;
                         const double v = weights(edge, 0).value_variance;
                         if (v < best_variance) {
                             best_variance = v;
                             best_residual2 = residual2;
                             best = edge;
                         }
+                    }
+                    // Seen over the larger window the contour is bent, so a line over a smaller one is a chord, all of
+                    // a rounding's to the same side of it.
+                    if (place == 0 && parabola && !straight && best.degree == 1 && best.count >= 4) {
+                        best = bent;
+                        best_variance = weights(bent, 0).value_variance;
+                        best_residual2 = bent_residual2;
                     }
                     accepted = accepted || here;
                     if (here && place == 0) break;  // one-sided windows are for corners and ends

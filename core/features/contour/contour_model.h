@@ -35,6 +35,9 @@ struct ContourPitch {
     bool is_wall(double dx, double dz) const;
     // Missing returns, or a jump to another part: nothing is known in between.
     bool is_gap(double dx, double dz) const;
+    // A step that is too low for a wall, between neighbours `at` and `at` + 1: more than eight sigma, and level on
+    // either side of it, as no flank and no rounded rim is.
+    bool is_step(std::span<const double> x, std::span<const double> z, std::size_t at, double sigma_mm) const;
 };
 ContourPitch contour_pitch(std::span<const double> x, std::span<const double> z,
                            std::vector<double>& scratch);

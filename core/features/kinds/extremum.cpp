@@ -4,7 +4,8 @@
 // highest and lowest, x over z for leftmost and rightmost), the window is centred on its vertex and the fit
 // repeated, so that the noise that made one point the extreme one does not choose the window. Vertex t = -b /
 // (2 a), h = c - b^2 / (4 a); the covariance is that of (a, b, c) carried through these, noise from the
-// residuals.
+// residuals. The contour need not be a parabola (an arc between flanks, a ridge that noise hides): by how much a
+// quartic through the same points has its vertex elsewhere, beyond what noise makes of the difference, is added.
 //
 // Where the contour has no smooth extremum (a ridge of a corner, the end of a slope) the parabola's vertex
 // means nothing: the status is then not_found, unless the extreme point is a contour's end, which
@@ -15,6 +16,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/features/feature_points.h"
@@ -105,6 +107,7 @@ class Extremum final : public FeatureFinder {
         const double height = fit.origin + sign * (c - b * b / (4 * a));
         c_th(0, 1) *= sign;
         c_th(1, 0) *= sign;
+        c_th.diagonal() += other_shape2(t, h, sign, *top.piece, fit, vertex);
         if (upright) {
             feature.point_mm = {place, height};
             feature.covariance_mm2 = c_th;
@@ -187,6 +190,49 @@ class Extremum final : public FeatureFinder {
             fit.sigma2 = std::max(0.0, hh - right.dot(fit.coefficient)) / (fit.used - 3);
             gate = kApexGate * std::sqrt(fit.sigma2) + 1e-9;
         }
+    }
+
+    // Squares of what the vertex of a quartic is off that of the parabola, in t and h, without the noise of the
+    // difference; 0 where the points do not know a quartic.
+    Eigen::Vector2d other_shape2(const std::vector<double>& t, const std::vector<double>& h, double sign,
+                                 const FeaturePoints::Piece& piece, const Parabola& fit,
+                                 double vertex) const {
+        using Vector5 = Eigen::Matrix<double, 5, 1>;
+        constexpr int kFewest = 9;
+        constexpr double kFarthest = 0.25;  // in u
+        const double gate = kApexGate * std::sqrt(fit.sigma2) + 1e-9;
+        Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
+        Vector5 right = Vector5::Zero();
+        double hh = 0;
+        int used = 0;
+        for (int i = piece.first; i < piece.first + piece.count; ++i) {
+            const double u = (t[i] - fit.centre) / fit_length_, v = sign * (h[i] - fit.origin);
+            if (std::abs(u) > 0.5 || std::abs(h[i] - fit.origin) > fit_length_) continue;
+            if (std::abs(Eigen::Vector3d(u * u, u, 1).dot(fit.coefficient) - v) > gate) continue;
+            const double w = u - vertex;
+            const Vector5 row(
+                Vector5::Map(std::array<double, 5>{1, w, w * w, w * w * w, w * w * w * w}.data()));
+            normal += row * row.transpose();
+            right += v * row;
+            hh += v * v;
+            ++used;
+        }
+        if (used < kFewest) return Eigen::Vector2d::Zero();
+        const Eigen::LDLT<Eigen::Matrix<double, 5, 5>> solver(normal);
+        if (!(solver.rcond() > 1e-12)) return Eigen::Vector2d::Zero();
+        const Vector5 c = solver.solve(right);
+        const double sigma2 = std::max(0.0, hh - right.dot(c)) / (used - 5);
+        const Eigen::Matrix2d full = solver.solve(Eigen::Matrix<double, 5, 2>::Identity()).topRows<2>();
+        const Eigen::Matrix3d few = normal.topLeftCorner<3, 3>().ldlt().solve(Eigen::Matrix3d::Identity());
+        const double bow = 2 * fit.coefficient[0];  // of both: the quartic's own says little at its middle
+        const double shift = std::clamp(c[1] / bow, -kFarthest, kFarthest);
+        const double summit =
+            fit.coefficient[2] + vertex * (fit.coefficient[1] + vertex * fit.coefficient[0]);
+        const double rise = c[0] - summit;
+        const double shift_noise = sigma2 * std::max(0.0, full(1, 1) - few(1, 1)) / (bow * bow);
+        const double rise_noise = sigma2 * std::max(0.0, full(0, 0) - few(0, 0));
+        return {fit_length_ * fit_length_ * std::max(0.0, shift * shift - shift_noise),
+                std::max(0.0, rise * rise - rise_noise)};
     }
 
     // Round by round about the vertex that the last one found.

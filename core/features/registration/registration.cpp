@@ -59,7 +59,7 @@ Expected<ContourMatcher> ContourMatcher::make(const Profile& contour, const Eige
         const bool rising = tz[edge.point + 1] > tz[edge.point];
         const JumpEnd end =
             jump_end(tx, tz, rising ? edge.point : edge.point + 1, rising ? edge.point + 1 : edge.point, 0,
-                     static_cast<int>(tx.size()) - 1);
+                     static_cast<int>(tx.size()) - 1, impl->model.sigma_mm());
         if (end.is_edge) impl->jumps.push_back(end);
     }
     impl->learn_directions();

@@ -24,7 +24,7 @@ enum class RegistrationStatus {
     no_points,
     no_match,
     ambiguous,
-    sliding,     // a direction is undetermined: straight line
+    sliding,  // a direction is undetermined: straight line
     other_shape  // placed by the rest of it: where more than a quarter of the template belongs is another contour
 };
 std::string_view to_string(RegistrationStatus status);
@@ -42,7 +42,7 @@ struct Registration {
     // Of the template's length the share at whose x the scene shows a surface elsewhere, not none: that has another
     // shape, or something lies before it. Looked for where the inlier share is below 0.85, else 0.
     double replaced_share = 0;
-    int inliers = 0;          // scene points that the pose rests on
+    int inliers = 0;  // scene points that the pose rests on
     int iterations = 0;
 };
 

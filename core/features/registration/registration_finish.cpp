@@ -9,6 +9,7 @@ namespace seamwright {
 namespace {
 
 constexpr int kFewestOnWall = 5;
+constexpr double kSeenOfWall = 0.5;  // of its height
 
 // One linearisation of the finish.
 struct Normal {
@@ -46,20 +47,30 @@ void ContourMatcher::Impl::collect(const CentredPose& pose, double gate, int str
     }
 }
 
-// A tilted wall is seen as a row of neighbouring points. Single points on it are clutter, and would fix what
+// A tilted wall is seen as a row of neighbouring points over much of its height. Single points on it are clutter, and a
+// row about one of its ends is the sheet that begins there, whose end the line of sight decides: both would fix what
 // nothing fixes.
 void ContourMatcher::Impl::drop_sparse_walls() const {
     if (jumps.empty()) return;
     wall_hits.assign(model.edges().size(), 0);
+    wall_seen.assign(model.edges().size(),
+                     {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
     for (std::size_t i = 0; i < matches.size(); ++i) {
         const int edge = matches[i].foot.edge;
         if (!model.edges()[edge].wall) continue;
         const bool neighbours =
             i > 0 && matches[i - 1].foot.edge == edge && matches[i - 1].scene + 1 == matches[i].scene;
         wall_hits[edge] += neighbours ? kFewestOnWall : 1;
+        auto& [low, high] = wall_seen[static_cast<std::size_t>(edge)];
+        low = std::min(low, matches[i].foot.u), high = std::max(high, matches[i].foot.u);
     }
     std::erase_if(matches, [&](const Match& m) {
-        return model.edges()[m.foot.edge].wall && wall_hits[m.foot.edge] < kFewestOnWall;
+        const auto& edge = model.edges()[m.foot.edge];
+        if (!edge.wall) return false;
+        const auto& [low, high] = wall_seen[static_cast<std::size_t>(m.foot.edge)];
+        return wall_hits[m.foot.edge] < kFewestOnWall ||
+               (high - low < kSeenOfWall * 2 * edge.half &&
+                !sampled_wall(static_cast<std::size_t>(m.foot.edge)));
     });
 }
 

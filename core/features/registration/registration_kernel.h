@@ -99,8 +99,9 @@ struct ContourMatcher::Impl {
     mutable std::vector<Finish> finishes;
     mutable std::vector<Match> matches;
     mutable std::vector<JumpMatch> jump_matches;
-    mutable std::vector<int> wall_hits;                  // [edges]
-    mutable std::vector<Eigen::Vector3d> wall_gradient;  // [edges]
+    mutable std::vector<int> wall_hits;                        // [edges]
+    mutable std::vector<std::pair<double, double>> wall_seen;  // [edges] lowest and highest u that is met
+    mutable std::vector<Eigen::Vector3d> wall_gradient;        // [edges]
     mutable std::vector<double> sizes;
     mutable std::vector<float> bin_residual2;  // [bins] negative: no partner
     mutable std::vector<char> seen_x;          // whether the scene has a point in the cell along x

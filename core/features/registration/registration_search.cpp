@@ -10,6 +10,8 @@ namespace {
 // Cosine of the steepest surface whose end is an edge: a rounded one ends for the sensor where it gets too
 // steep to be seen, which is another place of it at another turn.
 constexpr double kSteepest = 0.6;
+// Bent by more than this part of the chord's length, and by more than noise, behind its end: not an edge either.
+constexpr double kBow = 0.06, kBowNoise = 4;
 
 // Appends the polygon through `kept` with no edge longer than `spacing`.
 void append_polygon(const std::vector<double>& x, const std::vector<double>& z, const std::vector<int>& kept,
@@ -109,16 +111,18 @@ void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin, c
     jumps.clear();
     const int solid = static_cast<int>(solid_x_.size());
     for (int i = 0; i + 1 < solid; ++i) {
-        if (!pitch.is_wall(solid_x_[i + 1] - solid_x_[i], solid_z_[i + 1] - solid_z_[i])) continue;
+        if (!pitch.is_wall(solid_x_[i + 1] - solid_x_[i], solid_z_[i + 1] - solid_z_[i]) &&
+            !pitch.is_step(solid_x_, solid_z_, static_cast<std::size_t>(i), sigma_mm))
+            continue;
         const bool rising = solid_z_[i + 1] > solid_z_[i];
         const JumpEnd end =
-            jump_end(solid_x_, solid_z_, rising ? i : i + 1, rising ? i + 1 : i, 0, solid - 1);
+            jump_end(solid_x_, solid_z_, rising ? i : i + 1, rising ? i + 1 : i, 0, solid - 1, sigma_mm);
         if (end.is_edge) jumps.push_back(end);
     }
 }
 
 JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int lower, int upper, int first,
-                 int last) {
+                 int last, double sigma_mm) {
     // Behind the upper point, away from the lower one, as far as the surface goes on (8 points at most).
     const int step = upper - lower;
     int behind = upper;
@@ -134,6 +138,14 @@ JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int
     const int near = std::clamp(upper - 3 * step, std::min(behind, upper), std::max(behind, upper));
     const double nx = x[upper] - x[near], nz = z[upper] - z[near];
     end.is_edge = std::abs(nx) > kSteepest * std::hypot(nx, nz) || std::abs(dx) > kSteepest * d;
+    // What lies between the two ends of the stretch, across it.
+    if (const int between = std::abs(upper - behind) - 1; between >= 2 && d > 0) {
+        double off = 0;
+        for (int k = behind - step; k != upper; k -= step)
+            off += ((x[k] - x[behind]) * dz - (z[k] - z[behind]) * dx) / (d * between);
+        if (std::abs(off) > kBow * d + kBowNoise * sigma_mm * std::sqrt(0.5 + 1.0 / between))
+            end.is_edge = false;
+    }
     if (d > 0) {
         end.tx = dx / d;
         end.tz = dz / d;

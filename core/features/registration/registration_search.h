@@ -48,9 +48,9 @@ struct JumpEnd {
     bool is_edge = true;  // a sharp end; false where the surface bends out of sight
 };
 // The jump between neighbours `lower` and `upper` (indices, side by side); the surface's direction comes from
-// up to `most` points behind the upper one within the range [first, last].
+// up to eight points behind the upper one within the range [first, last], of noise sigma_mm.
 JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int lower, int upper, int first,
-                 int last);
+                 int last, double sigma_mm);
 
 // The scene made ready once per match.
 struct SceneContour {

@@ -8,6 +8,7 @@
 #include "contour_scenes.h"
 #include "core/features/kinds/feature_registry.h"
 #include "core/profile/filter.h"
+#include "joints.h"
 
 namespace seamwright::scenes {
 namespace {
@@ -37,18 +38,27 @@ const std::vector<Kind>& kinds() {
         {"groove, nothing asked for", [](Dice& d) { return groove(d, "default"); }, 1},
         {"T-joint, flank 70 to 80 degrees", t_joint, 0.99},
         {"Z-fold, nothing asked for", z_fold, 1},
+        {"bare edge with burr", burr_end, 0.99},
+        {"fillet weld, toe in a window", weld_toe, 0.99},
+        {"embossed bead, its top", [](Dice& d) { return bead_top(d, true); }, 0.99},
+        {"sharp ridge, its top", [](Dice& d) { return bead_top(d, false); }, 1},
+        {"rim radius 2 to 8, its centre", rim_centre, 0.99},
+        {"template of any joint", template_of, 0.97},
     };
     return all;
 }
 
 TEST(ContourScenes, RightOrRefusedButNeverWrong) {
-    constexpr int kTrials = 600;
+    const char* asked = std::getenv("SEAMWRIGHT_TRIALS");
+    const int kTrials = asked ? std::atoi(asked) : 600;
+    const char* seed = std::getenv("SEAMWRIGHT_SEED");
     for (const Kind& kind : kinds()) {
         Tally tally;
-        Dice dice(11);
+        Dice dice(seed ? std::strtoull(seed, nullptr, 10) : 11);
         for (int i = 0; i < kTrials; ++i) {
             Scene scene = kind.make(dice);
             if (dice.chance(0.5)) scene.mirror();
+            if (dice.chance(0.3)) scene.look_down();
             Profile profile = scene.profile(dice);
             ASSERT_TRUE(filter_profile(profile, {}));
             auto finder = make_feature_finder(scene.recipe);
@@ -62,11 +72,12 @@ TEST(ContourScenes, RightOrRefusedButNeverWrong) {
             if ((tally.wrong > wrong || tally.refused > refused) && std::getenv("SEAMWRIGHT_SCENES"))
                 std::printf(
                     "  %s %d: %s (%.3f %.3f) for (%.3f %.3f), sigma %.3f; %d x %.3f noise %.3f grid %d "
-                    "missing %.3f reversed %d: %s\n",
+                    "missing %.3f reversed %d down %d: %s\n",
                     kind.name, i, std::string(to_string(f.status)).c_str(), f.point_mm.x(), f.point_mm.y(),
                     scene.truth.x(), scene.truth.y(), std::sqrt(f.covariance_mm2.trace()),
                     scene.sensor.points, scene.sensor.pitch, scene.sensor.noise, int(scene.sensor.grid),
-                    scene.sensor.missing, scene.sensor.reversed, f.message.english().c_str());
+                    scene.sensor.missing, scene.sensor.reversed, scene.sensor.down,
+                    f.message.english().c_str());
         }
         std::printf("%-34s right %3d  refused %3d  wrong %3d of %d\n", kind.name, tally.right, tally.refused,
                     tally.wrong, tally.all());

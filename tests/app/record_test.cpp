@@ -126,6 +126,12 @@ TEST_F(Record, ThePathIsCorrectedByARun) {
         std::count_if(krl.begin(), krl.end(), [](const std::string& l) { return l.starts_with("LIN "); }),
         static_cast<std::ptrdiff_t>(taught.size()))
         << "closed: back to the first point";
+    // The program that was written is a path like the table it was made beside.
+    const std::string written = (std::filesystem::path(out) / "seamwright_path.src").string();
+    const json again = answer_of({"path", project, "--path", written});
+    EXPECT_EQ(again["status"], "ok");
+    EXPECT_EQ(again["points"].get<std::size_t>(), taught.size()) << "with the first point again at its end";
+    EXPECT_NEAR(again["largest_shift_mm"].get<double>(), path["largest_shift_mm"].get<double>(), 0.5);
     // A wrong notation and a run that is not there.
     EXPECT_EQ(run_program({"path", project, "--path", bead, "--brand", "abb"}, folder).exit_code, 2);
     EXPECT_EQ(

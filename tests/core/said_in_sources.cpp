@@ -18,9 +18,9 @@ struct Call {
 // Whoever makes a Text of its arguments.
 const std::set<std::string> kErrors = {"input_error", "usage_error", "device_error", "file_error"};
 const std::set<std::string> kSayers = {
-    "refuse_unless", "say",       "missing",      "done",      "give_up",          "damaged",
-    "broken",        "refused",   "undetermined", "unless",    "failure",          "raise",
-    "missed",        "Judgement", "Error",        "judgement", "take_back_motion", "t"};
+    "refuse_unless", "say",          "missing",          "done",    "give_up", "damaged", "broken",
+    "refused",       "undetermined", "unless",           "failure", "raise",   "missed",  "Judgement",
+    "Error",         "judgement",    "take_back_motion", "t",       "gap",     "remark",  "run_in_doubt"};
 // The entries of tables of settings, and which argument their help is.
 const std::map<std::string, int> kHelps = {{"number", 4}, {"whole", 4}, {"text", 2}, {"choice", 2},
                                            {"yes_no", 2}, {"pose", 1},  {"list", 2}, {"object", 2}};

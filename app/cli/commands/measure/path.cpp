@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "app/cli/command.h"
+#include "app/cli/commands/measure/path_source.h"
 #include "devices/exchange/files.h"
 #include "devices/registry.h"
 #include "projects/file/project_file.h"
@@ -19,7 +20,9 @@ namespace {
 using nlohmann::json;
 
 struct PathArguments {
-    std::string file, path, brand, frame = "base", name = "seamwright_path", report;
+    PathSourceArguments source;
+    std::string file, name = "seamwright_path", report;
+    bool look = false;
     std::filesystem::path folder;
     std::int64_t run = 0;
     PathBlendOptions blend;
@@ -148,8 +151,9 @@ std::string report_html(const PathAnswer& a, const json& figures, const std::str
 }
 
 Expected<std::vector<ProgramFile>> files_of(const PathArguments& a, const PathAnswer& answer,
-                                            PathNotation notation, PathFrame frame, const Project& setup,
+                                            const std::string& brand, PathFrame frame, const Project& setup,
                                             std::int64_t run) {
+    SEAM_TRY(const auto notation, path_notation_from(brand));
     std::vector<ProgramFile> files{{a.name + ".csv", path_csv(answer.path, notation)}};
     PathProgramRequest request;
     request.name = a.name;
@@ -159,14 +163,31 @@ Expected<std::vector<ProgramFile>> files_of(const PathArguments& a, const PathAn
     request.rounding_mm = a.rounding_mm;
     for (const ApplicationPoint& p : answer.path.points) request.frame_from_tool.push_back(p.frame_from_tool);
     if (a.blend.closed) request.frame_from_tool.push_back(request.frame_from_tool.front());
-    SEAM_TRY(auto program, write_robot_path(a.brand, request));
+    SEAM_TRY(auto program, write_robot_path(brand, request));
     files.insert(files.end(), program.begin(), program.end());
     return files;
 }
 
-Expected<Answer> correct_path(const PathArguments& a) {
-    SEAM_TRY(const auto notation, path_notation_from(a.brand));
-    SEAM_TRY(auto path, read_path_csv(a.path, notation));
+Expected<Answer> look(const PathArguments& a) {
+    SEAM_TRY(auto look, look_at_path(a.source));
+    Answer out;
+    out.json = std::move(look.json);
+    out.text = std::move(look.text);
+    out.exit_code = look.whole ? kExitOk : kExitVerdict;
+    return out;
+}
+
+Expected<Answer> correct_path(const PathArguments& given) {
+    if (given.look) return look(given);
+    PathArguments a = given;
+    if (a.file.empty()) return usage_error("the project is missing", "", "give FILE.seam, or --look");
+    if (!a.source.brand.empty()) SEAM_OK(path_notation_from(a.source.brand));
+    SEAM_TRY(auto source, read_path_source(a.source));
+    const std::string brand = a.source.brand.empty() ? source.brand : a.source.brand;
+    if (brand.empty() && !a.folder.empty())
+        return usage_error("in whose notation the path is to be written is not said", "",
+                           "say --brand kuka, abb or ur");
+    a.blend.closed = a.blend.closed || source.closed;
     SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
     std::int64_t number = a.run;
     if (number == 0) {
@@ -178,14 +199,15 @@ Expected<Answer> correct_path(const PathArguments& a) {
     }
     SEAM_TRY(auto run, file.load_run(number, false));
     SEAM_TRY(auto setup, file.load_run_setup(number));
-    const PathFrame frame = a.frame == "base" ? PathFrame::base : PathFrame::workobject;
-    SEAM_TRY(auto answer, correct_application_path(setup, run, path, frame, a.blend));
+    SEAM_TRY(auto answer, correct_application_path(setup, run, source.path, source.frame, a.blend));
 
     Answer out;
     out.json = answer_json(answer, number);
+    if (source.program)
+        for (const Text& remark : source.program->remarks) out.json["remarks"].push_back(remark);
     out.exit_code = answer.ok() ? kExitOk : kExitVerdict;
     if (answer.ok() && !a.folder.empty()) {
-        SEAM_TRY(auto files, files_of(a, answer, notation, frame, setup, number));
+        SEAM_TRY(auto files, files_of(a, answer, brand, source.frame, setup, number));
         std::error_code failed;
         std::filesystem::create_directories(a.folder, failed);
         if (failed)
@@ -210,18 +232,25 @@ void add_path(CommandLine& line) {
         "The application path corrected point by point by a run: between regions the correction goes over "
         "without a\nstep. Written in the robot's notation, as CSV and as a program, to be run in the taught "
         "frame; nothing is\nwritten unless the safety gate passed every region and every point keeps its "
-        "limits.",
+        "limits. The path comes from a table, from a robot program or from an edge of the drawing; --look "
+        "lists "
+        "its points\nand, line by line, what of a program was understood and what was not, and makes "
+        "nothing.",
         "seamwright path door_left.seam --path bead.csv --brand kuka --out corrected\n"
+        "  seamwright path --look --path bead.src --with '$config.dat'\n"
+        "  seamwright path door_left.seam --drawing door.step --edge e12 --offset-mm 2 --stand-off-mm 8 "
+        "--brand kuka --out krc\n"
         "  bead.csv: x_mm,y_mm,z_mm,a_deg,b_deg,c_deg[,region]   (abb: x_mm,y_mm,z_mm,q1,q2,q3,q4; ur: "
         "x_m,y_m,z_m,rx_rad,ry_rad,rz_rad)");
-    command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
-    command->add_option("--path", a->path, "Taught path, one point a row")->required()->type_name("P.csv");
-    command->add_option("--brand", a->brand, "Notation of path and program: kuka | abb | ur")->required();
+    command->add_option("file", a->file, "The project")->type_name("FILE.seam");
+    add_path_source_options(*command, a->source);
+    command->add_flag("--look", a->look,
+                      "Shows the path and makes nothing; exit code 1 where lines are not understood");
+    command->add_option(
+        "--brand", a->source.brand,
+        "Notation of table and written program: kuka | abb | ur; else that of the program that was read");
     command->add_option("--out", a->folder, "Folder for NAME.csv and the program")->type_name("DIR");
     command->add_option("--run", a->run, "Which run (default: the last)")->check(CLI::PositiveNumber);
-    command->add_option("--frame", a->frame, "What the points are expressed in")
-        ->check(CLI::IsMember({"base", "workobject"}))
-        ->capture_default_str();
     command
         ->add_option("--blend-mm", a->blend.blend_mm,
                      "Transition where two regions meet without points between")

@@ -1,0 +1,628 @@
+// KRL: .src with its .dat, $config.dat.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/notation.h"
+#include "devices/robot_path/machine.h"
+
+namespace seamwright::program_path {
+namespace {
+
+// One line each; blocks by their closing words. What is never closed ends with its routine.
+class KrlBlocks {
+  public:
+    KrlBlocks(std::vector<std::vector<Token>> lines, int file) : lines_(std::move(lines)), file_(file) {}
+
+    bool done() const { return at_ >= lines_.size(); }
+    const std::vector<Token>& line() const { return lines_[at_]; }
+    void next() { ++at_; }
+
+    // Up to a line that begins with one of `ends`, or with what ends any routine; that line stays.
+    Block block(std::initializer_list<std::string_view> ends, int depth) {
+        Block all;
+        for (; !done(); ++at_) {
+            const std::string& word = line().front().text;
+            if (std::find(ends.begin(), ends.end(), word) != ends.end() || begins_or_ends_routine())
+                return all;
+            all.push_back(statement(depth));
+            if (done() || begins_or_ends_routine()) return all;
+        }
+        return all;
+    }
+    bool begins_or_ends_routine() const {
+        const std::string& word = line().front().text;
+        return word == "END" || word == "ENDFCT" || begins_routine();
+    }
+    bool begins_routine() const {
+        const std::string& word = line().front().text;
+        const std::string second = line().size() > 1 ? line()[1].text : "";
+        return word == "DEF" || word == "DEFFCT" ||
+               (word == "GLOBAL" && (second == "DEF" || second == "DEFFCT"));
+    }
+
+  private:
+    bool is(std::string_view word) const { return !done() && line().front().text == word; }
+
+    // What cannot be read is not known: what hangs on it is in doubt.
+    static ExprPtr no_value() {
+        auto e = std::make_shared<Expr>();
+        e->kind = Expr::Kind::name;
+        e->text = "?";
+        return e;
+    }
+    static ExprPtr read_condition(Cursor& c) {
+        try {
+            return read_expression(c, Dialect::krl);
+        } catch (const Misread&) {
+            return no_value();
+        }
+    }
+    static std::vector<Argument> read_cases(Cursor& c) {
+        try {
+            auto cases = read_arguments(c, Dialect::krl, "");
+            return cases.size() > 60 ? std::vector<Argument>{{{}, no_value()}} : cases;
+        } catch (const Misread&) {
+            return {{{}, no_value()}};
+        }
+    }
+
+    // Leaves the line that ends it as the one at hand.
+    Statement statement(int depth) {
+        Statement s;
+        s.file = file_;
+        s.line = line().front().line;
+        s.tokens = line();
+        if (depth >= kDeepestNesting) return s;
+        Cursor c(line());
+        {
+            if (c.accept("IF")) {
+                auto condition = read_condition(c);
+                s.kind = Statement::Kind::branch;
+                s.tokens.clear();
+                ++at_;
+                s.branches.emplace_back(condition, block({"ELSE", "ENDIF"}, depth + 1));
+                if (is("ELSE")) {
+                    ++at_;
+                    s.branches.emplace_back(nullptr, block({"ENDIF"}, depth + 1));
+                }
+            } else if (c.accept("FOR")) {
+                s.variable = c.peek().text;
+                if (!c.done()) c.take();
+                c.accept("=");
+                s.from = read_condition(c);
+                s.to = c.accept("TO") ? read_condition(c) : no_value();
+                if (c.accept("STEP")) s.step = read_condition(c);
+                s.kind = Statement::Kind::count;
+                s.tokens.clear();
+                ++at_;
+                s.branches.emplace_back(nullptr, block({"ENDFOR"}, depth + 1));
+            } else if (c.accept("WHILE")) {
+                auto condition = read_condition(c);
+                s.kind = Statement::Kind::loop;
+                s.tokens.clear();
+                ++at_;
+                s.branches.emplace_back(condition, block({"ENDWHILE"}, depth + 1));
+            } else if (c.accept("LOOP")) {
+                s.kind = Statement::Kind::loop;
+                s.tokens.clear();
+                ++at_;
+                s.branches.emplace_back(nullptr, block({"ENDLOOP"}, depth + 1));
+            } else if (c.accept("REPEAT")) {
+                s.kind = Statement::Kind::loop;
+                s.condition_last = true;
+                s.tokens.clear();
+                ++at_;
+                Block body = block({"UNTIL"}, depth + 1);
+                ExprPtr until;
+                if (is("UNTIL")) {
+                    Cursor u(line());
+                    u.take();
+                    until = read_condition(u);
+                }
+                s.branches.emplace_back(until, std::move(body));
+            } else if (c.accept("SWITCH")) {
+                choice(s, read_condition(c), depth);
+            }
+        }
+        if (done()) at_ = lines_.size() - 1;
+        if (begins_or_ends_routine() && at_ > 0) --at_;  // block() goes on behind it
+        return s;
+    }
+
+    void choice(Statement& s, const ExprPtr& what, int depth) {
+        s.kind = Statement::Kind::branch;
+        s.tokens.clear();
+        ++at_;
+        while (is("CASE") || is("DEFAULT")) {
+            Cursor c(line());
+            ExprPtr any;
+            if (c.take().text == "CASE") {
+                for (const Argument& a : read_cases(c)) {
+                    if (!a.value) continue;
+                    auto same = std::make_shared<Expr>();
+                    same->kind = Expr::Kind::binary;
+                    same->text = "==";
+                    same->parts = {{{}, what}, {{}, a.value}};
+                    if (any) {
+                        auto either = std::make_shared<Expr>();
+                        either->kind = Expr::Kind::binary;
+                        either->text = "OR";
+                        either->parts = {{{}, any}, {{}, same}};
+                        any = either;
+                    } else {
+                        any = same;
+                    }
+                }
+            }
+            ++at_;
+            s.branches.emplace_back(any, block({"CASE", "DEFAULT", "ENDSWITCH"}, depth + 1));
+        }
+    }
+
+    std::vector<std::vector<Token>> lines_;
+    int file_;
+    std::size_t at_ = 0;
+};
+
+Value frame_value(const Pose& pose) {
+    const KukaAbc abc = kuka_from_rotation(pose.linear());
+    Value v = Value::numbers({pose.translation().x(), pose.translation().y(), pose.translation().z(),
+                              abc.a_deg, abc.b_deg, abc.c_deg});
+    v.names = {"X", "Y", "Z", "A", "B", "C"};
+    return v;
+}
+
+// What is missing is taken from `otherwise`. nullopt: a number is not known, or missing with nothing to take.
+std::optional<Pose> pose_of(const Value& v, const std::optional<Pose>& otherwise) {
+    if (v.kind != Value::Kind::list || v.names.empty()) return {};
+    static constexpr std::array<std::string_view, 6> names = {"X", "Y", "Z", "A", "B", "C"};
+    std::array<double, 6> n{};
+    std::optional<Value> rest;
+    for (std::size_t i = 0; i < 6; ++i) {
+        const Value* part = v.part(names[i]);
+        if (!part) {
+            if (!otherwise) return {};
+            if (!rest) rest = frame_value(*otherwise);
+            part = &rest->parts[i];
+        }
+        const auto number = part->as_number();
+        if (!number || std::abs(*number) > 1e9) return {};
+        n[i] = *number;
+    }
+    return make_pose(rotation_from_kuka({n[3], n[4], n[5]}), {n[0], n[1], n[2]});
+}
+
+class Krl final : public Machine {
+  public:
+    explicit Krl(const ProgramPathOptions& options) : Machine(Dialect::krl, options) {}
+
+    void load(int file, std::string_view text) override {
+        std::vector<std::vector<Token>> lines;
+        std::vector<Token> line;
+        for (Token& t : tokens_of(text, Dialect::krl)) {
+            if (t.kind != Token::Kind::newline) {
+                line.push_back(std::move(t));
+            } else if (!line.empty()) {
+                note(file, line.front().line, LineKind::not_reached);
+                lines.push_back(std::exchange(line, {}));
+            }
+        }
+        if (!lines.empty() && lines.front().front().text == "DEFDAT") return data_list(file, lines);
+        KrlBlocks blocks(std::move(lines), file);
+        while (!blocks.done()) {
+            if (!blocks.begins_routine()) {
+                blocks.next();
+                continue;
+            }
+            Routine routine;
+            routine.file = file;
+            Cursor head(blocks.line());
+            try {
+                head.accept("GLOBAL");
+                if (head.take().text == "DEFFCT") head.name();
+                routine.name = head.name();
+                head.accept("(");
+                while (!head.done() && !head.accept(")")) {
+                    const Token t = head.take();
+                    if (t.kind == Token::Kind::name && t.text != "IN" && t.text != "OUT")
+                        routine.parameters.push_back(t.text);
+                }
+            } catch (const Misread&) {
+            }
+            note(file, blocks.line().front().line, LineKind::understood);
+            blocks.next();
+            routine.body = blocks.block({}, 0);
+            if (!blocks.done() && !blocks.begins_routine()) {
+                note(file, blocks.line().front().line, LineKind::understood);
+                blocks.next();
+            }
+            if (routine.name.empty() || routines_.count(routine.name) > 0) continue;
+            routine_order_.push_back(routine.name);
+            routines_[routine.name] = std::move(routine);
+        }
+    }
+
+  protected:
+    bool moves(const std::string& word) const override {
+        static const std::set<std::string> words = {"PTP",      "LIN",      "CIRC",      "PTP_REL", "LIN_REL",
+                                                    "CIRC_REL", "SPTP",     "SLIN",      "SCIRC",   "SPL",
+                                                    "SPTP_REL", "SLIN_REL", "SCIRC_REL", "SPL_REL", "ASYPTP"};
+        return words.count(word) > 0;
+    }
+    std::optional<std::string> preferred() const override {  // what a call of the file's name runs
+        return routine_order_.empty() ? std::optional<std::string>() : routine_order_.front();
+    }
+
+    void begin() override {
+        globals_["$NULLFRAME"] = frame_value(Pose::Identity());
+        for (const auto& [name, pose] : options_.frames) {
+            const auto tokens = tokens_of(name, Dialect::krl);
+            Cursor c(std::span<const Token>(tokens).first(tokens.size() - 1));
+            try {
+                const auto place = read_expression(c, Dialect::krl);
+                assign(*place, frame_value(pose));
+                if (place->kind == Expr::Kind::name && place->text == "$BASE") {
+                    set_frame({"$BASE", pose});
+                    base_set_ = true;
+                }
+            } catch (const Misread&) {
+            }
+        }
+    }
+
+    Flow execute(const Statement& s) override {
+        Cursor c(s.tokens);
+        const std::string word = c.peek().text;
+        if (moves(word)) {
+            motion(c);
+            return Flow::on;
+        }
+        if (word == "EXIT" || word == "RETURN") {
+            note(LineKind::understood);
+            return word == "EXIT" ? Flow::leave : Flow::back;
+        }
+        if (word == "GOTO") {
+            note(LineKind::not_understood, "jumps are not followed");
+            return Flow::on;
+        }
+        static const std::set<std::string> idle = {
+            "WAIT",      "PULSE",     "TRIGGER",  "ANOUT",      "ANIN",
+            "DIGIN",     "INTERRUPT", "CONTINUE", "HALT",       "SIGNAL",
+            "BRAKE",     "RESUME",    "EXT",      "EXTFCT",     "ON_ERROR_PROCEED",
+            "STOP",      "ENUM",      "STRUC",    "TIME_BLOCK", "IMPORT",
+            "CONST_VEL", "ERR_RAISE", "CHANNEL",  "CREAD",      "CWRITE",
+            "COPEN",     "CCLOSE",    "SREAD",    "SWRITE",     "ERR_CLEAR"};
+        static const std::set<std::string> order = {"SPLINE",  "ENDSPLINE", "PTP_SPLINE", "ELSE",
+                                                    "ENDIF",   "ENDFOR",    "UNTIL",      "ENDWHILE",
+                                                    "ENDLOOP", "ENDSWITCH"};
+        if (idle.count(word) > 0 || (word == "GLOBAL" && c.is("INTERRUPT", 1))) {
+            note(LineKind::passed_over);
+        } else if (order.count(word) > 0) {
+            if (word == "SPLINE") with(c);
+            note(LineKind::understood);
+        } else if (declares(c)) {
+            declaration(c, false);
+        } else if (s.tokens.size() == 2 && c.is(":", 1)) {
+            note(LineKind::understood);  // a label
+        } else {
+            const auto e = read_expression(c, Dialect::krl);
+            if (e->kind == Expr::Kind::call && c.done()) return call_routine(*e);
+            if (c.accept("=")) {
+                const auto value = read_expression(c, Dialect::krl);
+                give(*e, *value);
+            } else {
+                note(LineKind::not_understood, "this is not known here");
+            }
+        }
+        return Flow::on;
+    }
+
+    Value call(const Expr& e) override {
+        std::vector<Value> a;
+        for (const Argument& part : e.parts) a.push_back(part.value ? value_of(*part.value) : Value{});
+        if (e.text == ":" && a.size() == 2) {
+            const auto p = pose_of(a[0], Pose::Identity()), q = pose_of(a[1], Pose::Identity());
+            return p && q ? frame_value(*p * *q) : Value::unknown(!p ? a[0].text : a[1].text);
+        }
+        if (e.text == "INV_POS" && a.size() == 1) {
+            const auto p = pose_of(a[0], {});
+            return p ? frame_value(p->inverse()) : Value::unknown(shown(e));
+        }
+        if ((e.text == "SBASE" || e.text == "STOOL") && a.size() == 1) {
+            if (const auto n = a[0].as_number())
+                return numbered(e.text == "SBASE" ? "BASE_DATA" : "TOOL_DATA",
+                                static_cast<int>(std::clamp(*n, -1.0, 999.0)));
+        }
+        const auto x = a.empty() ? std::optional<double>() : a[0].as_number();
+        if (x && a.size() == 1) {
+            if (e.text == "ABS") return Value::of(std::abs(*x));
+            if (e.text == "SQRT" && *x >= 0) return Value::of(std::sqrt(*x));
+            if (e.text == "SIN") return Value::of(std::sin(rad_from_deg(*x)));
+            if (e.text == "COS") return Value::of(std::cos(rad_from_deg(*x)));
+            if (e.text == "TAN") return Value::of(std::tan(rad_from_deg(*x)));
+        }
+        return Value::unknown(shown(e));
+    }
+
+  private:
+    static bool is_type(const std::string& word) {
+        static const std::set<std::string> types = {"INT",  "REAL",   "BOOL", "CHAR", "FRAME", "POS", "E6POS",
+                                                    "AXIS", "E6AXIS", "FDAT", "LDAT", "PDAT",  "LOAD"};
+        return types.count(word) > 0;
+    }
+    static bool declares(const Cursor& c) {
+        return c.is("DECL") || c.is("GLOBAL") || c.is("CONST") ||
+               (is_type(c.peek().text) && c.peek(1).kind == Token::Kind::name);
+    }
+
+    // Says which positions it gives, in order.
+    void declaration(Cursor& c, bool in_data_list) {
+        while (c.accept("DECL") || c.accept("GLOBAL") || c.accept("CONST")) {
+        }
+        const std::string type = c.name();
+        if (type == "STRUC" || type == "ENUM" || type == "SIGNAL" || type == "EXT" || type == "EXTFCT")
+            return note(LineKind::passed_over);
+        do {
+            const Token first = c.peek();
+            if (first.kind != Token::Kind::name) throw Misread(first.text);
+            const auto place = read_expression(c, Dialect::krl);
+            if (c.accept("=")) {
+                assign(*place, value_of(*read_expression(c, Dialect::krl)));
+                if (in_data_list && (type == "E6POS" || type == "POS" || type == "FRAME"))
+                    positions_.push_back(first);
+            }
+        } while (c.accept(","));
+        note(LineKind::understood);
+    }
+
+    void data_list(int file, const std::vector<std::vector<Token>>& lines) {
+        for (const auto& tokens : lines) {
+            now_file_ = file, now_line_ = tokens.front().line;
+            Cursor c(tokens);
+            try {
+                if (c.is("DEFDAT") || c.is("ENDDAT")) {
+                    note(LineKind::understood);
+                } else if (declares(c)) {
+                    declaration(c, true);
+                } else if (c.is("EXT") || c.is("EXTFCT") || c.is("IMPORT") || c.is("SIGNAL") ||
+                           c.is("STRUC") || c.is("ENUM")) {
+                    note(LineKind::passed_over);
+                } else {
+                    const auto place = read_expression(c, Dialect::krl);
+                    c.expect("=");
+                    assign(*place, value_of(*read_expression(c, Dialect::krl)));
+                    note(LineKind::understood);
+                }
+            } catch (const Misread&) {
+                note(LineKind::not_understood, "this is not known here");
+            }
+        }
+        if (file != 0 || lines.front().size() < 2) return;
+        Routine all;  // a data list alone
+        all.name = lines.front()[1].text;
+        for (const Token& position : positions_) {
+            Token lin = position;
+            lin.text = "LIN";
+            Statement s;
+            s.line = position.line;
+            s.tokens = {lin, position};
+            all.body.push_back(std::move(s));
+        }
+        remark("a data list says no motions: its positions are taken in the order of their lines");
+        routine_order_.push_back(all.name);
+        routines_[all.name] = std::move(all);
+    }
+
+    Value numbered(const std::string& list, int n) {
+        if (n == 0) return frame_value(Pose::Identity());
+        const Value* all = variable(list);
+        const auto i = static_cast<std::size_t>(n - 1);
+        const std::string name = fmt::format("{}[{}]", list, n);
+        if (!all || n < 1 || all->kind != Value::Kind::list || i >= all->parts.size() ||
+            !pose_of(all->parts[i], {}))
+            return Value::unknown(name);
+        return all->parts[i];
+    }
+
+    void base(const Value& v, const std::string& name) {
+        base_set_ = true;
+        const auto pose = pose_of(v, {});
+        const bool null = pose && pose->isApprox(Pose::Identity(), 1e-12);
+        set_frame({null ? "" : name, pose});
+    }
+    void ipo_mode(const Value& v) {
+        if (v.text == "#TCP") fixed_tool_ = true;
+        if (v.text == "#BASE") fixed_tool_ = false;
+    }
+    // What an inline form is run with: FDAT_ACT=FP1.
+    void frame_data(const Value& v, const std::string& name) {
+        const auto number = [&](std::string_view field) {
+            const Value* part = v.kind == Value::Kind::list ? v.part(field) : nullptr;
+            const auto n = part ? part->as_number() : std::nullopt;
+            return n && *n >= 0 && *n < 1000 ? std::optional(static_cast<int>(*n)) : std::nullopt;
+        };
+        if (const auto n = number("BASE_NO"))
+            base(numbered("BASE_DATA", *n), fmt::format("BASE_DATA[{}]", *n));
+        else
+            base(Value::unknown(name), name + ".BASE_NO");
+        const auto tool = number("TOOL_NO");
+        tool_ = tool ? fmt::format("TOOL_DATA[{}]", *tool) : name + ".TOOL_NO";
+        if (const Value* mode = v.kind == Value::Kind::list ? v.part("IPO_FRAME") : nullptr) ipo_mode(*mode);
+    }
+
+    void give(const Expr& place, const Expr& what) {
+        const Value value = value_of(what);
+        assign(place, value);
+        note(LineKind::understood);
+        const Expr* root = &place;
+        while (root->of) root = root->of.get();
+        const std::string name = value.known() && what.kind == Expr::Kind::record
+                                     ? fmt::format("{}, line {}", root->text, now_line_)
+                                 : value.known() || value.text.empty() ? shown(what)
+                                                                       : value.text;
+        if (root->text == "$BASE") {
+            const Value* now = variable("$BASE");
+            base(now ? *now : Value{}, &place == root ? name : fmt::format("$BASE, line {}", now_line_));
+        } else if (root->text == "$TOOL") {
+            tool_ = name;
+        } else if (root->text == "$IPO_MODE") {
+            ipo_mode(value);
+        } else if (root->text == "FDAT_ACT") {
+            frame_data(value, shown(what));
+        } else if (root->text.starts_with('$')) {
+            note(LineKind::understood);
+        }
+    }
+
+    Flow call_routine(const Expr& e) {
+        if (e.text == "BAS" && !e.parts.empty() && e.parts[0].value) {
+            const std::string what = value_of(*e.parts[0].value).text;
+            const auto n = e.parts.size() > 1 && e.parts[1].value ? value_of(*e.parts[1].value).as_number()
+                                                                  : std::nullopt;
+            if ((what == "#BASE" || what == "#TOOL") && n && *n >= 0 && *n < 1000) {
+                const int i = static_cast<int>(*n);
+                if (what == "#BASE") base(numbered("BASE_DATA", i), fmt::format("BASE_DATA[{}]", i));
+                if (what == "#TOOL") tool_ = fmt::format("TOOL_DATA[{}]", i);
+                note(LineKind::understood);
+            } else {
+                note(LineKind::passed_over);
+            }
+            return Flow::on;
+        }
+        Flow flow = Flow::on;
+        if (enter(e.text, e.parts, flow))
+            note(LineKind::understood);
+        else
+            note(LineKind::passed_over, Text("{} is not in the files that were read", e.text));
+        return flow;
+    }
+
+    // WITH $VEL=..., $BASE=SBASE(FP1.BASE_NO), $TOOL=STOOL2(FP1)
+    void with(Cursor& c) {
+        while (!c.done() && !c.is("WITH")) c.take();
+        if (!c.accept("WITH")) return;
+        do {
+            const auto place = read_expression(c, Dialect::krl);
+            c.expect("=");
+            const auto value = read_expression(c, Dialect::krl);
+            if (place->text == "$BASE") {
+                const Value v = value_of(*value);
+                base(v, v.known() ? with_name(*value, "BASE_DATA") : v.text);
+            } else if (place->text == "$TOOL") {
+                tool_ = with_name(*value, "TOOL_DATA");
+            } else if (place->text == "$IPO_MODE") {
+                ipo_mode(value_of(*value));
+            }
+        } while (c.accept(","));
+    }
+    // SBASE(FP1.BASE_NO) and STOOL2(FP1) by the number that they lead to.
+    std::string with_name(const Expr& e, const std::string& list) {
+        if (e.kind != Expr::Kind::call || e.parts.empty() || !e.parts[0].value) return shown(e);
+        Value v = value_of(*e.parts[0].value);
+        if (v.kind == Value::Kind::list)
+            if (const Value* n = v.part(list == "TOOL_DATA" ? "TOOL_NO" : "BASE_NO")) v = Value(*n);
+        const auto n = v.as_number();
+        return n ? fmt::format("{}[{:.0f}]", list, *n) : shown(e);
+    }
+
+    struct Target {
+        std::optional<Pose> pose;
+        std::optional<Pose> step;  // of a relative motion
+        bool joints = false;
+        std::string name, unknown;
+    };
+    Target target(Cursor& c, const std::string& word) {
+        Target t;
+        const auto e = read_expression(c, Dialect::krl);
+        if (e->kind != Expr::Kind::record) t.name = shown(*e);
+        const Value v = value_of(*e);
+        t.unknown = v.known() ? shown(*e) : v.text;
+        if (v.kind != Value::Kind::list) {
+            t.joints = (word == "PTP" || word == "SPTP") &&
+                       (t.unknown == "XHOME" || t.unknown == "HOME" || t.unknown.starts_with("$AXIS"));
+            return t;
+        }
+        t.joints =
+            v.part("A1") || v.part("A2") || v.part("A3") || v.part("A4") || v.part("A5") || v.part("A6");
+        if (!t.joints) t.pose = pose_of(v, here());
+        return t;
+    }
+    // LIN_REL: along the base's axes, or with #TOOL the tool's.
+    Target relative(Cursor& c) {
+        Target t;
+        const auto e = read_expression(c, Dialect::krl);
+        const Value v = value_of(*e);
+        t.unknown = v.known() ? shown(*e) : v.text;
+        t.joints = v.kind == Value::Kind::list && v.part("A1");
+        if (!t.joints) t.step = pose_of(v, Pose::Identity());
+        return t;
+    }
+
+    void motion(Cursor& c) {
+        const std::string word = c.take().text;
+        const bool rel = word.ends_with("_REL");
+        const std::string kind = rel ? word.substr(0, word.size() - 4) : word;
+        if (kind == "ASYPTP") return gap("external axes alone move here");
+        const auto read = [&] { return rel ? relative(c) : target(c, kind); };
+        std::vector<Target> targets = {read()};
+        double angle = 0;
+        if (kind == "CIRC" || kind == "SCIRC") {
+            c.expect(",");
+            targets.push_back(read());
+        }
+        while (c.accept(",")) {
+            c.expect("CA");
+            const auto n = value_of(*read_expression(c, Dialect::krl)).as_number();
+            if (!n) return gap("the circle's angle is not known");
+            angle = rad_from_deg(*n);
+            if (angle == 0) return gap("the circle's angle is not known");
+        }
+        bool in_tool = false;
+        for (Cursor rest = c; !rest.done();)
+            if (rest.take().text == "#" && rest.is("TOOL")) in_tool = true;
+        with(c);
+        if (rel) {
+            for (Target& t : targets) {
+                if (!t.step || !here()) continue;
+                if (in_tool)
+                    t.pose = *here() * *t.step;
+                else if (t.step->linear().isApprox(Eigen::Matrix3d::Identity(), 1e-12))
+                    t.pose = make_pose(here()->linear(), here()->translation() + t.step->translation());
+                else
+                    return gap("a relative motion that turns about the base's axes");
+            }
+            if (!here() && !targets.front().joints)
+                return gap("where this relative motion begins is not known");
+        }
+        const ProgramMotion how = kind == "PTP" || kind == "SPTP"   ? ProgramMotion::joint
+                                  : kind == "LIN" || kind == "SLIN" ? ProgramMotion::linear
+                                  : kind == "SPL"                   ? ProgramMotion::spline
+                                                                    : ProgramMotion::circular;
+        const Target& end = targets.back();
+        if (end.joints && how != ProgramMotion::circular) return joint_values();
+        for (const Target& t : targets)
+            if (!t.pose) return gap(Text("{} is not known from the program", t.unknown));
+        if (!base_set_) {
+            base_set_ = true;
+            remark("$BASE is not set before the first point: the points are taken in the robot's base");
+        }
+        if (how == ProgramMotion::circular)
+            arc(*targets.front().pose, *end.pose, end.name, angle);
+        else
+            move(*end.pose, how, end.name);
+    }
+
+    std::vector<Token> positions_;
+    bool base_set_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Machine> krl_machine(const ProgramPathOptions& options) {
+    return std::make_unique<Krl>(options);
+}
+
+}  // namespace seamwright::program_path

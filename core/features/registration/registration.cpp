@@ -62,6 +62,10 @@ Expected<ContourMatcher> ContourMatcher::make(const Profile& contour, const Eige
                      static_cast<int>(tx.size()) - 1, impl->model.sigma_mm());
         if (end.is_edge) impl->jumps.push_back(end);
     }
+    for (std::size_t i = 0; i + 1 < tx.size(); ++i)
+        if (impl->model.pitch().is_gap(tx[i + 1] - tx[i], tz[i + 1] - tz[i]))
+            gap_ends(tx, tz, static_cast<int>(i), 0, static_cast<int>(tx.size()) - 1, impl->model.sigma_mm(),
+                     impl->jumps);
     impl->learn_directions();
     impl->search.prepare(impl->model);
     impl->finder = impl->search;

@@ -81,7 +81,7 @@ void ContourMatcher::Impl::collect_jumps(const CentredPose& pose, double gate) c
         double best = std::numeric_limits<double>::infinity();
         JumpMatch match{};
         for (const JumpEnd& s : scene.jumps) {
-            if (s.height < 0.5 * t.height || s.height > 2 * t.height) continue;
+            if (s.of_gap != t.of_gap || s.height < 0.5 * t.height || s.height > 2 * t.height) continue;
             const double ex = s.x - pose.dx, ez = s.z - pose.dz;
             const double qx = pose.cosine * ex + pose.sine * ez - t.x,
                          qz = -pose.sine * ex + pose.cosine * ez - t.z;

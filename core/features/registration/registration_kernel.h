@@ -149,13 +149,14 @@ struct ContourMatcher::Impl {
     // Registration::replaced_share at the pose.
     double replaced(const Finish& finish, double sigma) const;
     Held held(const Finish& finish, const Support& here, double sigma, const Eigen::Vector3d& twist) const;
+    Held held_by_ends(const Eigen::Vector3d& twist) const;
     void follow(Finish& finish, Support& support, double sigma) const;
     // By how much the cost of the second must exceed that of the first to be told from it.
     static double telling_difference(const Support& first);
     // Noise across the contour of `matches` as a function of its inclination: variance = level + slope * nz^2. A
     // triangulation sensor is noisy in z at given x, so a steep flank is quieter across than a flat; a drawn
-    // contour may be noisy alike in all directions. Level and slope come from a regression of the squared
-    // residuals.
+    // contour may be noisy alike in all directions, and one resampled from places that are known less well than
+    // heights is quieter on the flat. Level and slope come from a regression of the squared residuals.
     struct AcrossNoise {
         double mean_square = 0, level = 0, slope = 0;
         // Relative to the mean; the template, recorded with the same kind of sensor, is taken to behave alike.

@@ -111,7 +111,9 @@ void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin, c
     jumps.clear();
     const int solid = static_cast<int>(solid_x_.size());
     for (int i = 0; i + 1 < solid; ++i) {
-        if (!pitch.is_wall(solid_x_[i + 1] - solid_x_[i], solid_z_[i + 1] - solid_z_[i]) &&
+        const double dx = solid_x_[i + 1] - solid_x_[i], dz = solid_z_[i + 1] - solid_z_[i];
+        if (pitch.is_gap(dx, dz) && gap_ends(solid_x_, solid_z_, i, 0, solid - 1, sigma_mm, jumps)) continue;
+        if (!pitch.is_wall(dx, dz) &&
             !pitch.is_step(solid_x_, solid_z_, static_cast<std::size_t>(i), sigma_mm))
             continue;
         const bool rising = solid_z_[i + 1] > solid_z_[i];
@@ -154,6 +156,21 @@ JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int
     end.x += 0.5 * end.pitch * end.tx;
     end.z += 0.5 * end.pitch * end.tz;
     return end;
+}
+
+bool gap_ends(const std::vector<double>& x, const std::vector<double>& z, int before, int first, int last,
+              double sigma_mm, std::vector<JumpEnd>& ends) {
+    constexpr double kLevel = 0.5;  // of its width that a gap's sides may differ in height
+    const double dx = x[before + 1] - x[before], dz = z[before + 1] - z[before];
+    if (!(std::abs(dz) < kLevel * std::abs(dx))) return false;
+    for (const bool left : {true, false}) {
+        const int end = left ? before : before + 1, other = left ? before + 1 : before;
+        JumpEnd rim = jump_end(x, z, other, end, first, last, sigma_mm);
+        rim.height = std::hypot(dx, dz);
+        rim.of_gap = true;
+        if (rim.is_edge && rim.pitch > 0) ends.push_back(rim);
+    }
+    return true;
 }
 
 void SceneContour::add_polygon_edge(double x0, double z0, double x1, double z1) {

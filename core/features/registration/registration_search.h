@@ -46,11 +46,17 @@ struct JumpEnd {
     double pitch;         // along the surface
     double height;        // of the jump
     bool is_edge = true;  // a sharp end; false where the surface bends out of sight
+    bool of_gap = false;  // the rim of a gap, `height` its width
 };
 // The jump between neighbours `lower` and `upper` (indices, side by side); the surface's direction comes from
 // up to eight points behind the upper one within the range [first, last], of noise sigma_mm.
 JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int lower, int upper, int first,
                  int last, double sigma_mm);
+
+// The two rims of a gap between neighbours `before` and `before` + 1, where their surfaces are about level; a rim that
+// bends out of sight is none. False where it is no such gap.
+bool gap_ends(const std::vector<double>& x, const std::vector<double>& z, int before, int first, int last,
+              double sigma_mm, std::vector<JumpEnd>& ends);
 
 // The scene made ready once per match.
 struct SceneContour {

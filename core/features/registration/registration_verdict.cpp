@@ -41,7 +41,11 @@ ContourMatcher::Impl::AcrossNoise ContourMatcher::Impl::across_noise() const {
     AcrossNoise noise;
     noise.mean_square = rss / n;
     noise.slope = spread_nz2 > kLeastSpread ? (sr / n - mean_nz2 * noise.mean_square) / spread_nz2 : 0;
-    noise.slope = std::clamp(noise.slope, 0.0, mean_nz2 > 0 ? noise.mean_square / mean_nz2 : 0.0);
+    // Not below a tenth of the mean on the flattest and on the steepest.
+    constexpr double kLeastShare = 0.1;
+    const double most = mean_nz2 > 0 ? noise.mean_square / mean_nz2 : 0;
+    noise.slope =
+        std::clamp(noise.slope, -(1 - kLeastShare) * noise.mean_square / std::max(1 - mean_nz2, 0.1), most);
     noise.level = noise.mean_square - noise.slope * mean_nz2;
     return noise;
 }
@@ -123,6 +127,22 @@ void ContourMatcher::Impl::add_jumps_and_walls(NormalEquations& normal, double s
             normal.gradient.noalias() += pitch_variance * wall_gradient[e] * wall_gradient[e].transpose();
 }
 
+// Where the slopes leave the motion along the twist open, ends of sheets that both have hold it, each to a pitch.
+ContourMatcher::Impl::Held ContourMatcher::Impl::held_by_ends(const Eigen::Vector3d& twist) const {
+    double told = 0, pull = 0;
+    for (const JumpMatch& j : jump_matches) {
+        const double share = j.row.dot(twist);
+        told += share * share / j.variance;
+        pull -= share * j.residual / j.variance;
+    }
+    Held place;
+    if (!(told > 1 / (search.step_mm() * search.step_mm()))) return place;
+    place.held = true;
+    place.shift = std::clamp(pull / told, -search.step_mm(), search.step_mm());
+    place.variance = 1 / told;
+    return place;
+}
+
 ContourMatcher::Impl::Weakest ContourMatcher::Impl::weakest(const NormalEquations& normal,
                                                             const AcrossNoise& noise) const {
     const Eigen::Vector3d scale(1, 1, 2 / model.extent_mm());
@@ -202,7 +222,10 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
     const bool open = weak.unsure || !directions[0].determined;
     const bool thin = jump_matches.empty() && weak.seen < kFewPoints;
     Held place;
-    if (open || thin) place = held(found, rating, sigma, weak.twist);
+    if (open || thin) {
+        place = held_by_ends(weak.twist);
+        if (!place.held) place = held(found, rating, sigma, weak.twist);
+    }
     const bool sliding = (open || thin) && !place.held;
     place.held = place.held && open;
     if (place.held) pose = moved_along(pose, weak.twist, place.shift);

@@ -20,10 +20,15 @@ constexpr double kUnfinished = 10;        // of leaving or entering a track in i
 constexpr int kWholeTrack = 24;           // points of a track passed over from which that is its middle
 constexpr int kWindow = 40;               // lines over which the stripe may be lost and found again
 constexpr int kTrackGap = 6;              // lines over which a track may be interrupted
-constexpr double kIntensityCost = 1;      // of a candidate of foreign brightness
-constexpr double kForeign = 0.7;          // logarithm of the brightness ratio from which it is foreign,
-constexpr double kForeignSpread = 3;      // or, far from lines that tell, this many of their deviations
-constexpr double kBrightLines = 64;       // over which brightness is averaged
+constexpr double kReflection = 2.5;       // of a candidate of a track that another one outlasts, per line:
+    // more than leaving the line out, however the stripe is broken there
+constexpr int kOutlasts =
+    12;  // points of the longer one beyond either end of the shorter, or the field's end
+constexpr double kSideBySide = 0.08;  // share of the shorter one's lines on which both are seen
+constexpr double kIntensityCost = 1;  // of a candidate of foreign brightness
+constexpr double kForeign = 0.7;      // logarithm of the brightness ratio from which it is foreign,
+constexpr double kForeignSpread = 3;  // or, far from lines that tell, this many of their deviations
+constexpr double kBrightLines = 64;   // over which brightness is averaged
 constexpr double kDimmest = 1e-3, kBrightest = 1e9;  // grey values, whatever a caller hands in
 constexpr double kBrightPrior = 8;                   // weight of the whole frame's, in lines
 
@@ -32,12 +37,24 @@ struct Track {
     State state;
     int last = 0;    // candidate
     int points = 0;  // so far
+    int first = 0;   // candidate
+    int piece = 0;   // what it is a piece of: see join_tracks()
+};
+
+// Tracks that one straight on from the other joins across lines where neither is seen.
+struct Stretch {
+    int points = 0, first_line = 0, last_line = 0;
+    bool reflection = false;
 };
 
 struct Tracks {
     std::vector<Track> tracks;
     std::vector<int> open;                 // tracks that may still continue
     std::vector<int> track_of, number_of;  // per candidate: its track, and how many of it come before
+    std::vector<Stretch> stretches;
+    std::vector<int> order;         // of the tracks long enough for one, by their first line
+    std::vector<Candidate> hidden;  // from the filter: reflections that a line shows
+    std::vector<int> beside;        // per stretch: lines on which it and the present one are seen
     struct Pair {
         double d2;
         int track, candidate;
@@ -92,7 +109,89 @@ void follow_tracks(const Workspace& w, const Model& m, Tracks& t) {
             const Candidate& p = w.candidates[std::size_t(c)];
             t.track_of[std::size_t(c)] = int(t.tracks.size());
             t.open.push_back(int(t.tracks.size()));
-            t.tracks.push_back({first_point(m, p.x, p.z), c, 1});
+            t.tracks.push_back({first_point(m, p.x, p.z), c, 1, c, -1});
+        }
+    }
+}
+
+// Tracks of which one begins where the other's end points to, up to kWindow lines farther on: a stripe that is broken
+// by what outshines it is one all the same.
+void join_tracks(const Workspace& w, const Model& m, Tracks& t) {
+    constexpr int kFewest = 6;     // points that know a direction
+    constexpr int kAtOnce = 3;     // lines
+    constexpr double kAim = 0.03;  // rad, what a contour may turn where it is not seen
+    t.stretches.clear();
+    t.order.clear();
+    for (std::size_t k = 0; k < t.tracks.size(); ++k)
+        if (t.tracks[k].points >= kFewest) t.order.push_back(int(k));
+    const auto line_of = [&](int candidate) { return w.candidates[std::size_t(candidate)].line; };
+    // Tracks rise with their first candidate, so with their first line.
+    for (const int k : t.order) {
+        Track& track = t.tracks[std::size_t(k)];
+        const Candidate& begin = w.candidates[std::size_t(track.first)];
+        double nearest = 1;
+        for (const int j : t.order) {
+            if (j >= k) break;
+            const Track& before = t.tracks[std::size_t(j)];
+            const Stretch& stretch = t.stretches[std::size_t(before.piece)];
+            const int i = begin.line - line_of(before.last);
+            if (i < 1 || i > kWindow || stretch.last_line != line_of(before.last)) continue;
+            const double gone = i * before.state.spacing();
+            const double off = std::hypot(begin.x - before.state.x - i * before.state.vx,
+                                          begin.z - before.state.z - i * before.state.vz);
+            const double within = m.band * m.scale.largest() * std::sqrt(1 + before.state.p11) + kAim * gone +
+                                  0.5 * m.scale.spacing;
+            if (off / within < nearest) nearest = off / within, track.piece = before.piece;
+        }
+        // Or at a sharp edge or a step of the contour: one ends where the other begins.
+        if (track.piece < 0 && track.points >= kWholeTrack) {
+            double least = std::numeric_limits<double>::infinity();
+            for (const int j : t.order) {
+                if (j >= k) break;
+                const Track& before = t.tracks[std::size_t(j)];
+                const int i = begin.line - line_of(before.last);
+                if (i < 1 || i > kAtOnce || before.points < kWholeTrack ||
+                    t.stretches[std::size_t(before.piece)].last_line != line_of(before.last))
+                    continue;
+                const double step = std::hypot(begin.x - before.state.x, begin.z - before.state.z);
+                if (step < least) least = step, track.piece = before.piece;
+            }
+        }
+        if (track.piece < 0) {
+            track.piece = int(t.stretches.size());
+            t.stretches.push_back({0, begin.line, 0, false});
+        }
+        Stretch& stretch = t.stretches[std::size_t(track.piece)];
+        stretch.points += track.points;
+        stretch.last_line = std::max(stretch.last_line, line_of(track.last));
+    }
+}
+
+// A reflection begins or ends where the stripe goes on: a stretch that another one, seen beside it here and there,
+// outlasts at one end at least and does not fall short of at the other. At a step or at the field's rim both may end.
+void find_reflections(const Workspace& w, Tracks& t) {
+    const auto piece_of = [&](int c) { return t.tracks[std::size_t(t.track_of[std::size_t(c)])].piece; };
+    for (std::size_t a = 0; a < t.stretches.size(); ++a) {
+        Stretch& s = t.stretches[a];
+        if (s.points < kWholeTrack) continue;
+        t.beside.assign(t.stretches.size(), 0);
+        for (std::size_t line = 0; line + 1 < w.first.size(); ++line) {
+            bool seen = false;
+            for (int c = w.first[line]; c < w.first[line + 1]; ++c) seen |= piece_of(c) == int(a);
+            if (!seen) continue;
+            for (int c = w.first[line]; c < w.first[line + 1]; ++c) {
+                const int other = piece_of(c);
+                if (other < 0 || other == int(a)) continue;
+                ++t.beside[std::size_t(other)];
+            }
+        }
+        for (std::size_t b = 0; b < t.stretches.size(); ++b) {
+            const Stretch& o = t.stretches[b];
+            if (b == a || o.points < kWholeTrack || t.beside[b] < std::max(4., kSideBySide * s.points))
+                continue;
+            const int before = s.first_line - o.first_line, behind = o.last_line - s.last_line;
+            if (std::min(before, behind) > -kOutlasts && std::max(before, behind) >= kOutlasts)
+                s.reflection = true;
         }
     }
 }
@@ -105,6 +204,8 @@ void reserve(Workspace& w, Tracks& t, std::size_t lines, std::size_t per_line) {
     w.first.reserve(lines + 1), w.path.reserve(lines);
     w.samples_x.reserve(lines), w.samples_z.reserve(lines);
     t.tracks.reserve(all), t.track_of.reserve(all), t.number_of.reserve(all);
+    t.stretches.reserve(all / 6), t.order.reserve(all / 6), t.beside.reserve(all / 6);
+    t.hidden.reserve(lines);
     t.open.reserve(open), t.pairs.reserve(open * std::min<std::size_t>(per_line, 16));
 }
 
@@ -172,6 +273,7 @@ Expected<void> track_stripe(const ProfileCandidates& input, const FilterOptions&
 
     Workspace& w = workspace();
     Tracks& all_tracks = tracks();
+    all_tracks.hidden.clear();
     reserve(w, all_tracks, lines, std::size_t(input.per_line));
     w.candidates.clear(), w.first.clear(), w.path.clear();
     w.chosen.clear();  // slot of each candidate
@@ -221,6 +323,14 @@ Expected<void> track_stripe(const ProfileCandidates& input, const FilterOptions&
         model.edge_cost = kEdge * model.outlier_cost;
         model.edge_window = 2;
         follow_tracks(w, model, all_tracks);
+        join_tracks(w, model, all_tracks);
+        find_reflections(w, all_tracks);
+        const auto is_reflection = [&](int c) {
+            const int piece = all_tracks.tracks[std::size_t(all_tracks.track_of[std::size_t(c)])].piece;
+            return piece >= 0 && all_tracks.stretches[std::size_t(piece)].reflection;
+        };
+        for (std::size_t c = 0; c < w.candidates.size(); ++c)
+            if (is_reflection(int(c))) w.candidates[c].cost += kReflection;
         w.enter.resize(w.candidates.size()), w.leave.resize(w.candidates.size());
         const auto unfinished = [&](int points) {
             return kUnfinished * model.outlier_cost * std::min(1., double(points) / kWholeTrack);
@@ -244,6 +354,7 @@ Expected<void> track_stripe(const ProfileCandidates& input, const FilterOptions&
             for (int c = from + 1; c < to; ++c) {
                 const Candidate& p = w.candidates[std::size_t(c)];
                 if (p.line == a.line || p.line == b.line) continue;
+                if (is_reflection(c)) continue;
                 const double t = double(p.line - a.line) / (b.line - a.line);
                 const double distance = std::hypot(p.x - a.x - t * (b.x - a.x), p.z - a.z - t * (b.z - a.z));
                 if (p.line == line && distance >= nearest) continue;
@@ -251,8 +362,22 @@ Expected<void> track_stripe(const ProfileCandidates& input, const FilterOptions&
                 take(std::size_t(line), w.chosen[std::size_t(c)]);
             }
         }
+        // Of lines left out the strongest is shown, but where that is a reflection the filter may not take it for a
+        // contour of its own.
+        for (const int c : w.path) all_tracks.track_of[std::size_t(c)] = -1;  // taken all the same
+        for (std::size_t c = 0; c < w.candidates.size(); ++c) {
+            const Candidate& p = w.candidates[c];
+            const auto line = std::size_t(p.line);
+            if (all_tracks.track_of[c] < 0 || !is_reflection(int(c)) || profile.x_mm[line] != p.x ||
+                profile.z_mm[line] != p.z)
+                continue;
+            all_tracks.hidden.push_back(p);
+            profile.z_mm[line] = nan;
+        }
     }
-    return filter_profile(profile, options);
+    const auto filtered = filter_profile(profile, options);
+    for (const Candidate& p : all_tracks.hidden) profile.z_mm[std::size_t(p.line)] = p.z;
+    return filtered;
 }
 
 }  // namespace seamwright

@@ -64,11 +64,11 @@ double contour_noise_mm(std::span<const double> x, std::span<const double> z, st
 }
 
 bool ContourPitch::is_wall(double dx, double dz) const {
-    return std::hypot(dx, dz) > 5 * distance && std::abs(dx) <= 3 * along_x;
+    return std::hypot(dx, dz) > 5 * distance && std::abs(dx) <= 3.5 * along_x;
 }
 
 bool ContourPitch::is_gap(double dx, double dz) const {
-    return std::hypot(dx, dz) > 6 * distance && std::abs(dx) > 3 * along_x;
+    return std::hypot(dx, dz) > 6 * distance && std::abs(dx) > 3.5 * along_x;
 }
 
 bool ContourPitch::is_step(std::span<const double> x, std::span<const double> z, std::size_t at,
@@ -77,8 +77,31 @@ bool ContourPitch::is_step(std::span<const double> x, std::span<const double> z,
     if (at < 1 || at + 2 >= x.size()) return false;
     const double dx = x[at + 1] - x[at], rise = std::abs(z[at + 1] - z[at]);
     return rise > kLeastSigmas * sigma_mm && std::hypot(dx, rise) > kLeast * distance &&
-           std::abs(dx) <= 1.5 * along_x && std::abs(z[at] - z[at - 1]) < kLevel * rise &&
+           std::abs(dx) <= 3.5 * along_x && std::abs(z[at] - z[at - 1]) < kLevel * rise &&
            std::abs(z[at + 2] - z[at + 1]) < kLevel * rise;
+}
+
+int ContourPitch::mixed(std::span<const double> x, std::span<const double> z, std::size_t at,
+                        double sigma_mm) const {
+    constexpr double kLeast = 3.5, kLeastSigmas = 10, kLevel = 0.2;
+    for (std::size_t many = 1; many <= 2; ++many) {
+        if (at < 3 || at + many + 2 >= x.size()) return 0;
+        const std::size_t a = at - 1, b = at + many;
+        const double rise = z[b] - z[a], least = std::max(kLeastSigmas * sigma_mm, kLeast * distance);
+        if (std::abs(rise) < least || std::abs(x[b] - x[a]) > (1.5 + double(many)) * along_x) continue;
+        const double level = kLevel * std::abs(rise);
+        if (std::abs(z[a] - z[a - 1]) > level || std::abs(z[a] - z[a - 2]) > level ||
+            std::abs(z[b + 1] - z[b]) > level || std::abs(z[b + 2] - z[b]) > level)
+            continue;
+        const double margin = std::max(4 * sigma_mm, 0.08 * std::abs(rise));
+        bool between = true;
+        for (std::size_t k = at; k < b; ++k) {
+            const double up = (z[k] - z[a]) * (rise > 0 ? 1 : -1);
+            between = between && up > margin && up < std::abs(rise) - margin && (z[k] - z[k - 1]) * rise > 0;
+        }
+        if (between) return static_cast<int>(many);
+    }
+    return 0;
 }
 
 ContourPitch contour_pitch(std::span<const double> x, std::span<const double> z,
@@ -106,10 +129,10 @@ void ContourModel::build(const Profile& profile) {
         x_.push_back(x);
         z_.push_back(z);
     }
-    const std::size_t n = x_.size();
-    if (n < 5) return;
-    origin_ = {std::accumulate(x_.begin(), x_.end(), 0.0) / double(n),
-               std::accumulate(z_.begin(), z_.end(), 0.0) / double(n)};
+    const std::size_t all = x_.size();
+    if (all < 5) return;
+    origin_ = {std::accumulate(x_.begin(), x_.end(), 0.0) / double(all),
+               std::accumulate(z_.begin(), z_.end(), 0.0) / double(all)};
     for (double& v : x_) v -= origin_.x();
     for (double& v : z_) v -= origin_.y();
     const auto [x0, x1] = std::minmax_element(x_.begin(), x_.end());
@@ -122,6 +145,20 @@ void ContourModel::build(const Profile& profile) {
     if (!(pitch_.distance > 0)) return;
     sigma_ = std::max(contour_noise_mm(x_, z_, scratch_), kSmallestSigma_mm);
 
+    // Points within a step are no part of the contour.
+    const std::vector<double> all_x = x_, all_z = z_;
+    x_.clear();
+    z_.clear();
+    for (std::size_t i = 0; i < all_x.size();) {
+        if (const int many = pitch_.mixed(all_x, all_z, i, sigma_); many > 0) {
+            i += static_cast<std::size_t>(many);
+            continue;
+        }
+        x_.push_back(all_x[i]);
+        z_.push_back(all_z[i++]);
+    }
+    const std::size_t n = x_.size();
+    if (n < 5) return;
     link_.assign(n, 0);
     run_first_.assign(n, 0);
     run_last_.assign(n, 0);

@@ -38,6 +38,9 @@ struct ContourPitch {
     // A step that is too low for a wall, between neighbours `at` and `at` + 1: more than eight sigma, and level on
     // either side of it, as no flank and no rounded rim is.
     bool is_step(std::span<const double> x, std::span<const double> z, std::size_t at, double sigma_mm) const;
+    // How many points from `at` on (one or two) stand in such a step: the light of its edge falls on both sheets, or a
+    // resampling has drawn a line between them. They lie on neither.
+    int mixed(std::span<const double> x, std::span<const double> z, std::size_t at, double sigma_mm) const;
 };
 ContourPitch contour_pitch(std::span<const double> x, std::span<const double> z,
                            std::vector<double>& scratch);

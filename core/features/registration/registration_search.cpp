@@ -95,6 +95,7 @@ void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin, c
     }
     solid_x_.clear();
     solid_z_.clear();
+    mixed_.clear();
     const double near = 6 * pitch.distance;
     const int count = static_cast<int>(n);
     for (int i = 0; i < count; ++i) {
@@ -108,6 +109,7 @@ void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin, c
         solid_z_.push_back(z[i]);
     }
     sigma_mm = contour_noise_mm(solid_x_, solid_z_, scratch_);
+    leave_out_mixed();
     jumps.clear();
     const int solid = static_cast<int>(solid_x_.size());
     for (int i = 0; i + 1 < solid; ++i) {
@@ -121,6 +123,35 @@ void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin, c
             jump_end(solid_x_, solid_z_, rising ? i : i + 1, rising ? i + 1 : i, 0, solid - 1, sigma_mm);
         if (end.is_edge) jumps.push_back(end);
     }
+}
+
+void SceneContour::leave_out_mixed() {
+    run_x_.clear();
+    run_z_.clear();
+    for (std::size_t i = 0; i < solid_x_.size();) {
+        const int many = pitch.mixed(solid_x_, solid_z_, i, sigma_mm);
+        if (many == 0) {
+            run_x_.push_back(solid_x_[i]);
+            run_z_.push_back(solid_z_[i++]);
+            continue;
+        }
+        for (int k = 0; k < many; ++k, ++i) mixed_.push_back({solid_x_[i], solid_z_[i]});
+    }
+    if (mixed_.empty()) return;
+    solid_x_.swap(run_x_);
+    solid_z_.swap(run_z_);
+    // The same points, in the same order, among all of them.
+    std::size_t next = 0, kept = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        if (next < mixed_.size() && x[i] == mixed_[next][0] && z[i] == mixed_[next][1]) {
+            ++next;
+            continue;
+        }
+        x[kept] = x[i];
+        z[kept++] = z[i];
+    }
+    x.resize(kept);
+    z.resize(kept);
 }
 
 JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int lower, int upper, int first,

@@ -11,6 +11,7 @@
 // origin.
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -82,7 +83,9 @@ struct SceneContour {
   private:
     void add_polygon_edge(double x0, double z0, double x1, double z1);
     std::vector<double> scratch_, run_x_, run_z_;
+    void leave_out_mixed();                  // points that stand in a step (ContourPitch::mixed)
     std::vector<double> solid_x_, solid_z_;  // the points that have neighbours
+    std::vector<std::array<double, 2>> mixed_;
     std::vector<int> kept_;
     std::vector<std::array<double, 3>> sorted_;
 };

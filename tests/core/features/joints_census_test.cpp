@@ -91,6 +91,8 @@ TEST(Joints, TheFilterMarksWhatLiesOffTheContour) {
             }
             std::printf("%-24s %8.4f %9d %9d   %d\n", name, all.f1(), all.invented, all.missed,
                         all.right + all.missed);
+            // Of rounded rims a few pitches wide the last points lie no nearer to the contour than dust does.
+            EXPECT_GE(all.f1(), condition < 2 ? 0.99 : 0.97) << name << ", " << kConditions[condition];
         }
     }
 }
@@ -176,6 +178,120 @@ TEST(Joints, MatchedWhereDeterminedRefusedOtherwise) {
         }
         all.print("ALL determined");
         never.print("ALL others");
+        if (inside) {
+            EXPECT_GE(all.right, 0.97 * all.trials);
+            EXPECT_GE(all.covered, 0.83 * all.right);
+        }
+        EXPECT_LE(all.wrong + never.wrong, 0.008 * (all.trials + never.trials));
+        EXPECT_LE(all.far + never.far, 0.002 * (all.trials + never.trials));
+    }
+}
+
+// What a camera delivers of a joint: the stripe, single false peaks, and over a part of its lines a reflection that is
+// as smooth and brighter: a copy of the stripe beside it, or a line across. Of the lines under it the stripe may be lost
+// on some.
+enum class Ghost { none, beside, across };
+struct Frame {
+    ProfileCandidates candidates;
+    std::vector<double> ghost_z;  // per line; NaN: none
+};
+Frame frame_with(Ghost ghost, double lost, const std::vector<Sheet>& sheets, const SensorModel& s,
+                 Dice& dice) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const Profile stripe = seen(sheets, s, dice);
+    std::vector<double> x;
+    for (int k = 0; k < s.points; ++k) x.push_back(-s.half_field() + s.pitch * (k + 0.5));
+    const std::vector<double> clean = heights(sheets, x, s.steepest_deg);
+    const auto n = static_cast<std::size_t>(s.points);
+    Frame f;
+    auto& c = f.candidates;
+    c.lines = s.points, c.per_line = 3;
+    c.count.assign(n, 0);
+    c.x_mm.assign(3 * n, nan), c.z_mm = c.x_mm;
+    c.intensity.assign(3 * n, 0.F);
+    f.ghost_z.assign(n, nan);
+    const double grey = dice.uniform(90, 140), wave = dice.uniform(0, 0.25), length = dice.uniform(5, 40);
+    const double bright = grey * dice.uniform(1.2, 2.2),
+                 shift = (dice.chance(0.5) ? 1 : -1) * dice.spread(0.8, 8);
+    const double slope = dice.uniform(-0.3, 0.3), bow = dice.uniform(-0.004, 0.004);
+    const auto lines = static_cast<std::size_t>(dice.uniform(0.15, 0.6) * double(n));
+    const auto from = static_cast<std::size_t>(dice.uniform(0, double(n - lines)));
+    double middle = 0, last = 0;
+    for (std::size_t k = from + lines / 2; k < n && middle == 0; ++k)
+        if (std::isfinite(clean[k])) middle = last = clean[k];
+    for (std::size_t k = 0; k < n; ++k) {
+        const auto put = [&](double z, double light) {
+            const std::size_t slot = 3 * k + c.count[k]++;
+            c.x_mm[slot] = x[k], c.z_mm[slot] = z, c.intensity[slot] = float(light);
+        };
+        const bool in = ghost != Ghost::none && k >= from && k < from + lines;
+        if (std::isfinite(stripe.z_mm[k]) && !(in && dice.chance(lost)))
+            put(stripe.z_mm[k],
+                grey * (1 + wave * std::sin(6.28 * x[k] / length)) * (1 + 0.08 * dice.normal()));
+        if (in) {
+            if (std::isfinite(clean[k])) last = clean[k];
+            const double u = x[k] - x[from + lines / 2];
+            f.ghost_z[k] =
+                (ghost == Ghost::beside ? last + shift : middle + shift + slope * u + bow * u * u) +
+                s.noise * dice.normal();
+            put(f.ghost_z[k], bright * (1 + 0.05 * dice.normal()));
+        }
+        if (dice.chance(0.03)) put(dice.uniform(-30, 30), dice.uniform(30, 120));
+    }
+    return f;
+}
+
+TEST(Joints, GhostsBesideTheStripe) {
+    struct Row {
+        Ghost ghost;
+        const char* name;
+        double lost, least_right, most_wrong;
+    };
+    // Where the stripe is lost on many lines nothing in a single frame says which of two like contours it is.
+    const Row rows[] = {{Ghost::none, "no ghost", 0, 1, 0},
+                        {Ghost::beside, "a copy beside it", 0, 0.93, 0.04},
+                        {Ghost::beside, "a copy, stripe lost on 30 %", 0.3, 0.65, 0.2},
+                        {Ghost::across, "a line across", 0, 0.88, 0.01},
+                        {Ghost::across, "a line, stripe lost on 30 %", 0.3, 0.55, 0.02}};
+    constexpr JointMaker makers[] = {kJoints[0], kJoints[1], kJoints[2], kJoints[4],
+                                     kJoints[5], kJoints[7], kJoints[10]};
+    for (const Row& row : rows) {
+        Dice dice(seed_of(103));
+        int right = 0, refused = 0, wrong = 0;
+        const int trials = trials_of(100);
+        for (int i = 0; i < trials; ++i) {
+            const Joint joint = makers[dice.of(std::size(makers))](dice);
+            SensorModel s;
+            s.points = 800 + 240 * dice.of(3);
+            s.pitch = dice.uniform(0.05, 0.1), s.noise = dice.spread(0.01, 0.04);
+            s.grid = Grid::exact, s.missing = 0.01, s.steepest_deg = 80;
+            const Profile whole = seen(joint.sheets, s, dice);
+            Profile taught;
+            for (std::size_t k = 0; k < whole.size(); ++k)
+                if (whole.x_mm[k] >= joint.from_x && whole.x_mm[k] <= joint.to_x)
+                    taught.x_mm.push_back(whole.x_mm[k]), taught.z_mm.push_back(whole.z_mm[k]);
+            const Vector2d mark(1, -1), shift(dice.uniform(-3, 3), dice.uniform(-3, 3));
+            const double turn = rad(dice.uniform(-2, 2));
+            const Vector2d d = mark + shift - turned(mark, turn);
+            const PlanarMotion truth{d.x(), d.y(), turn};
+            const Frame f = frame_with(row.ghost, row.lost, moved(joint.sheets, truth), s, dice);
+            Profile tracked;
+            ASSERT_TRUE(track_stripe(f.candidates, {}, tracked));
+            ASSERT_TRUE(filter_profile(taught, {}));
+            auto matcher = ContourMatcher::make(taught, mark);
+            ASSERT_TRUE(matcher);
+            SearchWindow window;
+            window.dx_mm = window.dz_mm = 6, window.phi_rad = 0.1;
+            const Registration r = matcher->match(tracked, window);
+            if (r.status != RegistrationStatus::ok)
+                ++refused;
+            else
+                ++((r.scene_from_template * mark - truth * mark).norm() < 0.5 ? right : wrong);
+        }
+        std::printf("%-28s right %4d  refused %4d  wrong %4d of %d\n", row.name, right, refused, wrong,
+                    trials);
+        EXPECT_GE(right, row.least_right * trials) << row.name;
+        EXPECT_LE(wrong, row.most_wrong * trials) << row.name;
     }
 }
 

@@ -331,7 +331,7 @@ void Machine::note(int file, int line, LineKind kind, Text why) {
 }
 
 void Machine::gap(Text why) {
-    note(LineKind::not_understood, std::move(why));
+    note(LineKind::not_understood, doubt_ > 0 ? doubt_why_ : std::move(why));
     here_.reset();
 }
 

@@ -67,7 +67,7 @@ TEST_F(PathCommand, BadInputEndsInASentence) {
     };
     refused({"--look", "--path", program}, 2, "no routine of the program moves the robot");
     refused({"--look", "--path", write("p.csv", "x\n")}, 2, "in whose notation");
-    refused({"--look", "--path", (folder_ / "none.src").string()}, 3, "does not exist");
+    refused({"--look", "--path", (folder_ / "none.src").string()}, 3, "cannot be opened");
     refused({"--look"}, 2, "--drawing and --edge");
     refused({"--look", "--path", program, "--lines", "9..3"}, 2, "no range");
     refused({"--look", "--path", program, "--frame-pose", "x"}, 2, "names no frame");

@@ -90,8 +90,9 @@ json point_json(std::size_t number, const Pose& pose, const std::string& frame) 
 std::string numbers(const Pose& pose) {
     const KukaAbc abc = kuka_from_rotation(pose.linear());
     const Eigen::Vector3d& t = pose.translation();
-    return fmt::format("{:>10.3f} {:>10.3f} {:>10.3f} {:>9.3f} {:>8.3f} {:>9.3f}", t.x(), t.y(), t.z(),
-                       abc.a_deg, abc.b_deg, abc.c_deg);
+    const auto shown = [](double v) { return std::abs(v) < 5e-4 ? 0 : v; };  // no -0.000
+    return fmt::format("{:>10.3f} {:>10.3f} {:>10.3f} {:>9.3f} {:>8.3f} {:>9.3f}", shown(t.x()), shown(t.y()),
+                       shown(t.z()), shown(abc.a_deg), shown(abc.b_deg), shown(abc.c_deg));
 }
 constexpr const char* kNumbersHead = "      x mm       y mm       z mm     A deg    B deg     C deg";
 
@@ -176,11 +177,13 @@ void add_path_source_options(CLI::App& command, PathSourceArguments& a) {
         .add_option("--routine", a.routine, "Of a program: which; else the one that moves and no other calls")
         ->type_name("NAME");
     command.add_option("--with", a.also, "Further files of the program: $config.dat, modules")
-        ->type_name("FILE");
+        ->type_name("FILE")
+        ->allow_extra_args(false);
     command
         .add_option("--frame-pose", a.frame_poses,
                     "Where a frame is that the program only names: base_from_frame")
-        ->type_name("NAME=POSE");
+        ->type_name("NAME=POSE")
+        ->allow_extra_args(false);
     command.add_option("--lines", a.lines, "Of the program: only the points of these")->type_name("20..85");
     command.add_option("--unit", a.unit, "Of APT without UNITS")->check(CLI::IsMember({"mm", "in", "m"}));
     command.add_flag("--leave-out", a.leave_out, "Without the lines of the program that are not understood");

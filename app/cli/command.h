@@ -57,6 +57,9 @@ void add_calibrate(CommandLine& line);
 void add_demo(CommandLine& line);
 void add_project_commands(CommandLine& line);  // new, info, check, export, mirror
 void add_type(CommandLine& line);
+void add_user(CommandLine& line);
+void add_audit(CommandLine& line);
+void add_diagnose(CommandLine& line);
 void add_import(CommandLine& line);
 void add_drawing(CommandLine& line);
 void add_propose(CommandLine& line);

@@ -6,6 +6,8 @@ int main(int argc, char** argv) {
     add_demo(line);
     add_project_commands(line);
     add_type(line);
+    add_user(line);
+    add_audit(line);
     add_import(line);
     add_drawing(line);
     add_propose(line);
@@ -19,6 +21,7 @@ int main(int argc, char** argv) {
     add_hand_over(line);
     add_acceptance(line);
     add_statistics(line);
+    add_diagnose(line);
     add_modes(line);
     add_drift(line);
     add_device_studies(line);

@@ -30,11 +30,11 @@ QString EventList::kind_text(EventKind kind) {
     return {};
 }
 
-EventList::EventList(Desk& desk) : QTableWidget(0, 4), desk_(desk) {
+EventList::EventList(Desk& desk) : QTableWidget(0, 5), desk_(desk) {
     setObjectName("events");
     setAccessibleName(tr("Event log"));
     setToolTip(tr("What happened, newest first"));
-    setHorizontalHeaderLabels({tr("When"), tr("Kind"), tr("Subject"), tr("Text")});
+    setHorizontalHeaderLabels({tr("When"), tr("Kind"), tr("Subject"), tr("Person"), tr("Text")});
     setEditTriggers(QAbstractItemView::NoEditTriggers);
     setSelectionBehavior(QAbstractItemView::SelectRows);
     setTabKeyNavigation(false);
@@ -62,8 +62,9 @@ void EventList::refresh() {
         const EventRecord& e = (*events)[events->size() - 1 - i];
         const QDateTime at = QDateTime::fromString(QString::fromStdString(e.utc), Qt::ISODateWithMs);
         const QStringList row{at.toLocalTime().toString("dd.MM. HH:mm:ss"), kind_text(e.kind),
-                              QString::fromStdString(e.subject), shown(e.text)};
-        for (int c = 0; c < 4; ++c) {
+                              QString::fromStdString(e.subject), QString::fromStdString(e.person),
+                              shown(e.text)};
+        for (int c = 0; c < 5; ++c) {
             auto* item = new QTableWidgetItem(row[c]);
             item->setToolTip(row[c]);
             if (e.kind == EventKind::alarm) item->setForeground(style::alarm(palette()));

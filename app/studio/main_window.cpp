@@ -7,6 +7,7 @@
 #include <QFileInfo>
 #include <QFrame>
 #include <QHBoxLayout>
+#include <QInputDialog>
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QMimeData>
@@ -21,6 +22,7 @@
 
 #include "app/studio/event_list.h"
 #include "app/studio/reuse_dialogs.h"
+#include "app/studio/sign_in_dialog.h"
 #include "app/studio/studio.h"
 #include "devices/exchange/json_fields.h"
 #include "projects/hand_over/hand_over.h"
@@ -100,6 +102,17 @@ MainWindow::MainWindow(Studio& studio) : studio_(studio), desk_(studio.desk()) {
         refresh_title();
         trouble_->hide();
     });
+    connect(&desk_, &Desk::person_changed, this, &MainWindow::refresh_person);
+    connect(&desk_, &Desk::opened, this, [this] {
+        if (desk_.asks_who() && !desk_.person()) QTimer::singleShot(0, this, &MainWindow::ask_who);
+    });
+    idle_timer_.setSingleShot(true);
+    connect(&idle_timer_, &QTimer::timeout, this, [this] {
+        if (!desk_.person()) return;
+        desk_.sign_out(Text("signed out: nobody worked for {} minutes", sign_out_minutes()));
+        tell_done(tr("Signed out: nobody worked for %1 minutes.").arg(sign_out_minutes()));
+    });
+    qApp->installEventFilter(this);
     connect(&desk_, &Desk::trouble, this, &MainWindow::tell);
     connect(&desk_, &Desk::checklist_changed, this, [this] {
         refresh_next();
@@ -130,6 +143,7 @@ MainWindow::MainWindow(Studio& studio) : studio_(studio), desk_(studio.desk()) {
     refresh_title();
     refresh_next();
     refresh_status();
+    refresh_person();
 }
 
 MainWindow::~MainWindow() = default;
@@ -268,7 +282,9 @@ void MainWindow::make_status() {
     push_ = label("status_push", tr("The last push"));
     events_ = label("status_events", tr("Alarms and refusals in the event log"));
     saved_ = label("status_saved", tr("Whether edits are saved"));
+    person_ = label("status_person", tr("Who is signed in"));
     for (QLabel* l : {sensors_, robots_, push_, events_}) statusBar()->addWidget(l);
+    statusBar()->addPermanentWidget(person_);
     statusBar()->addPermanentWidget(saved_);
     statusBar()->setSizeGripEnabled(false);
 }
@@ -433,6 +449,58 @@ void MainWindow::show_message(const QString& sentence, const char* tone) {
     trouble_->style()->unpolish(trouble_);
     trouble_->style()->polish(trouble_);
     trouble_->show();
+}
+
+void MainWindow::ask_who() {
+    if (!desk_.asks_who())
+        return tell(tr("The project has no users: nobody is asked. \"seamwright user add\" adds one."));
+    if (findChild<SignInDialog*>()) return;
+    auto* dialog = new SignInDialog(desk_, this);
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    dialog->open();
+}
+
+void MainWindow::refresh_person() {
+    const auto& person = desk_.person();
+    const bool asks = desk_.asks_who();
+    person_->setVisible(asks);
+    person_->setText(
+        person ? QStringLiteral("%1, %2").arg(QString::fromStdString(person->name), role_name(person->role))
+               : tr("nobody signed in"));
+    sign_in_->setEnabled(asks);
+    sign_out_->setEnabled(person.has_value());
+    if (person && sign_out_minutes() > 0)
+        idle_timer_.start(sign_out_minutes() * 60'000);
+    else
+        idle_timer_.stop();
+}
+
+int MainWindow::sign_out_minutes() const {
+    return studio_.settings().value("sign_out_minutes", 10).toInt();
+}
+
+void MainWindow::set_sign_out() {
+    bool given = false;
+    const int minutes = QInputDialog::getInt(this, tr("Sign out by itself"),
+                                             tr("Minutes without mouse and keyboard; 0: never"),
+                                             sign_out_minutes(), 0, 24 * 60, 1, &given);
+    if (!given) return;
+    studio_.settings().setValue("sign_out_minutes", minutes);
+    refresh_person();
+}
+
+bool MainWindow::eventFilter(QObject* object, QEvent* event) {
+    switch (event->type()) {
+        case QEvent::KeyPress:
+        case QEvent::MouseButtonPress:
+        case QEvent::MouseMove:
+        case QEvent::Wheel:
+            if (idle_timer_.isActive()) idle_timer_.start();
+            break;
+        default:
+            break;
+    }
+    return QMainWindow::eventFilter(object, event);
 }
 
 bool MainWindow::may_leave() {

@@ -35,6 +35,8 @@ class MainWindow : public QMainWindow {
     void toggle_full(QDockWidget* dock);  // one view alone, and back
     QList<QAction*> all_actions() const;  // what the palette lists
     bool may_leave();                     // asks about unsaved edits
+    // Whoever touches neither mouse nor keyboard for so long is signed out; 0: never.
+    int sign_out_minutes() const;
 
   protected:
     void closeEvent(QCloseEvent* event) override;
@@ -42,6 +44,7 @@ class MainWindow : public QMainWindow {
     bool focusNextPrevChild(bool next) override;
     void dragEnterEvent(QDragEnterEvent* event) override;
     void dropEvent(QDropEvent* event) override;
+    bool eventFilter(QObject* object, QEvent* event) override;
 
   private:
     QAction* action(const QString& name, const QString& icon_name, const QString& text,
@@ -74,6 +77,9 @@ class MainWindow : public QMainWindow {
     void mirror_project();
     void reteach();
     void show_manual(const QString& page);
+    void ask_who();
+    void set_sign_out();
+    void refresh_person();
     bool save();
 
     Studio& studio_;
@@ -87,7 +93,8 @@ class MainWindow : public QMainWindow {
     QPushButton* next_ = nullptr;
     QFrame* trouble_ = nullptr;
     QLabel* trouble_text_ = nullptr;
-    QLabel *sensors_ = nullptr, *robots_ = nullptr, *push_ = nullptr, *events_ = nullptr, *saved_ = nullptr;
+    QLabel *sensors_ = nullptr, *robots_ = nullptr, *push_ = nullptr, *events_ = nullptr, *saved_ = nullptr,
+           *person_ = nullptr;
     QMenu* recent_ = nullptr;
     QList<QAction*> in_bar_;  // beside the menus: save, undo, redo, all actions, language, theme
     QList<QDockWidget*> docks_;
@@ -96,6 +103,8 @@ class MainWindow : public QMainWindow {
     Step step_ = Step::cell;
     bool beginning_ = false;
     QTimer devices_timer_;
+    QTimer idle_timer_;
+    QAction *sign_in_ = nullptr, *sign_out_ = nullptr;
     QByteArray default_layout_;
 };
 

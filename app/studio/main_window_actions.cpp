@@ -82,6 +82,14 @@ void MainWindow::make_file_menu() {
             studio_.open_demo(true);
     }));
     file->addSeparator();
+    sign_in_ = action("sign_in", "", tr("Sign in..."), QKeySequence("Ctrl+I"), [this] { ask_who(); });
+    sign_out_ =
+        action("sign_out", "", tr("Sign out"), QKeySequence("Ctrl+Shift+I"), [this] { desk_.sign_out(); });
+    file->addAction(sign_in_);
+    file->addAction(sign_out_);
+    file->addAction(
+        action("sign_out_after", "", tr("Sign out by itself..."), {}, [this] { set_sign_out(); }));
+    file->addSeparator();
     file->addAction(action("quit", "", tr("&Quit"), QKeySequence::Quit, [this] { close(); }));
     in_bar_ << save_action;
 }

@@ -62,6 +62,13 @@ double chi_square_quantile(double degrees, double probability) {
     return boost::math::quantile(ChiSquared(degrees), probability);
 }
 
+double f_upper(double numerator_degrees, double denominator_degrees, double f) {
+    assert(numerator_degrees > 0 && denominator_degrees > 0);
+    if (!(f > 0)) return 1;
+    return boost::math::cdf(boost::math::complement(
+        boost::math::fisher_f_distribution<double, Quiet>(numerator_degrees, denominator_degrees), f));
+}
+
 double f_quantile(double numerator_degrees, double denominator_degrees, double probability) {
     assert(numerator_degrees > 0 && denominator_degrees > 0 && probability > 0 && probability < 1);
     return boost::math::quantile(

@@ -15,6 +15,8 @@ double t_quantile(double degrees, double probability);
 double student_two_sided_p(double degrees, double t);
 double chi_square_cdf(double degrees, double x);
 double chi_square_quantile(double degrees, double probability);
+// P(F > f).
+double f_upper(double numerator_degrees, double denominator_degrees, double f);
 double f_quantile(double numerator_degrees, double denominator_degrees, double probability);
 
 // Mean and unbiased standard deviation.

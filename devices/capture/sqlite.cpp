@@ -7,6 +7,7 @@
 #include <array>
 #include <cassert>
 #include <filesystem>
+#include <iterator>
 #include <set>
 #include <utility>
 
@@ -163,6 +164,19 @@ std::span<const std::byte> Statement::blob(int column) {
 
 bool Statement::is_null(int column) const {
     return sqlite3_column_type(stmt_.get(), column) == SQLITE_NULL;
+}
+
+void Statement::append_netstrings(int first, std::string& out) const {
+    for (int i = first, count = sqlite3_column_count(stmt_.get()); i < count; ++i) {
+        const auto* bytes =
+            static_cast<const char*>(sqlite3_column_type(stmt_.get(), i) == SQLITE_BLOB
+                                         ? sqlite3_column_blob(stmt_.get(), i)
+                                         : static_cast<const void*>(sqlite3_column_text(stmt_.get(), i)));
+        const auto size = bytes ? static_cast<std::size_t>(sqlite3_column_bytes(stmt_.get(), i)) : 0;
+        fmt::format_to(std::back_inserter(out), "{}:", size);
+        if (size > 0) out.append(bytes, size);
+        out += ',';
+    }
 }
 
 Expected<void> Statement::row_ok() const {

@@ -59,6 +59,9 @@ class Statement {
     std::string text(int column);
     std::span<const std::byte> blob(int column);  // valid until the next step
     bool is_null(int column) const;
+    // The columns from `first` on, each as a netstring "LENGTH:BYTES,": whole numbers in decimal, text and blobs as they
+    // are, NULL as an empty one.
+    void append_netstrings(int first, std::string& out) const;
     // Error when a column read from this row was not of the type asked for.
     Expected<void> row_ok() const;
 

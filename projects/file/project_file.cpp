@@ -195,7 +195,8 @@ Expected<ProjectFile> ProjectFile::create(const fs::path& name, const Project& p
                  Database::open(made.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile));
         SEAM_OK(migrate(db));
         SEAM_TRY(auto transaction, Transaction::begin(db));
-        SEAM_OK(save_rows_of(db, project));
+        SEAM_TRY(const auto made_rows, save_rows_of(db, project));
+        SEAM_OK(chain_changes(db, {}, made_rows));
         return transaction.commit();
     };
     SEAM_OK(finish_new(work(), made, path, replace));
@@ -257,7 +258,11 @@ Expected<ProjectFile> ProjectFile::open(const fs::path& path, FileAccess access)
         }
         // A backstop: checkpoint() comes long before.
         SEAM_OK(db.execute("PRAGMA wal_autocheckpoint = 16384"));
-        return ProjectFile(std::make_unique<Impl>(path, std::move(db)));
+        auto impl = std::make_unique<Impl>(path, std::move(db));
+        if (writing) {
+            SEAM_TRY(impl->trouble, chain_trouble(impl->db));
+        }
+        return ProjectFile(std::move(impl));
     }
 }
 
@@ -271,7 +276,13 @@ Expected<Project> ProjectFile::load() const {
 
 Expected<void> ProjectFile::save(const Project& project) {
     SEAM_TRY(auto transaction, Transaction::begin(impl_->db));
-    SEAM_OK(save_rows_of(impl_->db, project));
+    SEAM_TRY(const auto changes, save_rows_of(impl_->db, project));
+    for (const RowChange& change : changes)
+        SEAM_OK(may(change.table == "drift_watch" ? Deed::override
+                    : change.table == "regions" || change.table == "requirements" || change.table == "elastic"
+                        ? Deed::limits
+                        : Deed::teach));
+    SEAM_OK(chain_changes(impl_->db, impl_->name(), changes));
     SEAM_OK(transaction.commit());
     checkpoint();
     return {};

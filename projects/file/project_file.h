@@ -23,6 +23,10 @@
 // spots, regions, and captures packed into blobs of about 1 MiB, and refers to the setup it was made with
 // (the project as JSON, stored once per content), so that it can be computed again after the project was
 // edited. Evidence (evidence.h) refers to its setup in the same way.
+//
+// Who: a file may have users (users.h). Then what writes to it asks may() of the person who is signed in, here and nowhere
+// else, and refuses with a sentence (ErrorKind::usage). Everything that is written is an entry of the chain too
+// (chain.h); a file that was changed behind its back is read, but nobody works with it (ErrorKind::file).
 
 #include <filesystem>
 #include <memory>
@@ -32,10 +36,12 @@
 #include <vector>
 
 #include "core/text.h"
+#include "projects/file/chain.h"
 #include "projects/file/run_values.h"
 #include "projects/model/evidence.h"
 #include "projects/model/project.h"
 #include "projects/model/run.h"
+#include "projects/model/users.h"
 
 namespace seamwright {
 
@@ -85,7 +91,32 @@ class RunSetup {
 struct StoredMeasurements {
     std::size_t captures = 0;
     std::set<std::size_t> spots;  // positions in RunRecord::spots
+    // Of the rows that hold the captures, see chain.h.
+    std::vector<Digest> capture_rows = {}, image_rows = {};
 };
+
+// An event's row as it stands, its text in the form of stored_text.h.
+struct StoredEvent {
+    std::int64_t id = 0, run = 0;
+    std::string utc, kind, subject, text;
+};
+
+// Somebody who gave his password: other connections to the same file act for him with it (ProjectFile::act_for).
+class SignedIn {
+  public:
+    const Person& person() const { return person_; }
+
+  private:
+    friend class ProjectFile;
+    Person person_;
+    std::string row_, identity_;
+};
+
+// Error (input): empty, longer than kLongestId, a sign that is not seen (controls, marks of direction), a space or dash at
+// its ends.
+Expected<void> check_user_name(const std::string& name);
+// For a service: 256 random bits in figures. Error (file): the computer gives none.
+Expected<std::string> random_password();
 
 class ProjectFile {
   public:
@@ -163,13 +194,42 @@ class ProjectFile {
     Expected<StoredScan> load_scan(const std::string& name) const;
     Expected<void> delete_scan(const std::string& name);
 
-    // The long check: SQLite's integrity_check, foreign keys, every row decoded, every blob's checksum. Empty
+    // --- users; the first one is an administrator, and the last administrator stays while there are others
+    Expected<std::vector<User>> users() const;  // none: nobody is asked
+    Expected<void> add_user(const std::string& name, Role role, const std::string& password);
+    Expected<void> remove_user(const std::string& name);
+    Expected<void> set_role(const std::string& name, Role role);
+    // His own, or anybody's by an administrator.
+    Expected<void> set_password(const std::string& name, const std::string& password);
+    // Takes a tenth of a second or more (argon2id). Error (usage): the password is wrong, or it is too soon after three
+    // wrong ones (5 s, doubled with each, at most 5 min), whatever program tried them. Error (file): the chain is broken.
+    Expected<SignedIn> sign_in(const std::string& name, const std::string& password);
+    // Of a copy of the file too. Error (usage): of another project, or the user was changed meanwhile.
+    Expected<void> act_for(const SignedIn& who);
+    Expected<void> sign_out(const Text& why = "signed out");
+    void forget_person();  // without an entry: another connection wrote it
+    const std::optional<Person>& person() const;
+    // Error: why not, and who may. His role is read anew each time.
+    Expected<void> may(Deed deed) const;
+
+    // Entries above `after`, oldest first, at most `most` (0: all).
+    Expected<std::vector<StoredEvent>> stored_events() const;
+    Expected<std::vector<ChainEntry>> chain(std::int64_t after = 0, std::int64_t most = 0) const;
+    // Empty: every entry follows from the one before, and the file is as they say.
+    Expected<std::vector<Error>> check_chain() const;
+
+    // The long check: check_chain, SQLite's integrity_check, foreign keys, every row decoded, every blob's checksum. Empty
     // = sound.
     std::vector<Error> check() const;
 
   private:
     Expected<std::int64_t> setup_id(const RunSetup& setup);
     Expected<std::int64_t> insert_run(const RunRecord& run, const RunSetup& setup);
+    Expected<void> chain_run(std::int64_t number);
+    Expected<void> may_push_with(const RunSetup& setup, const std::string& type_id);
+    Expected<void> chain_user(const std::string& name, const std::string& what);
+    Expected<std::int64_t> append_event_row(const EventRecord& event);  // within a transaction
+    Expected<void> note_user(const std::string& name, const Text& text);
     struct Impl;
     explicit ProjectFile(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;

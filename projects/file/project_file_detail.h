@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -85,13 +86,25 @@ Expected<void> for_each_row(Statement& s, Read read) {
     }
 }
 
-// project_rows.cpp; within the caller's transaction.
-Expected<void> save_rows_of(Database& db, const Project& project);
+// project_rows.cpp; within the caller's transaction. Says what it changed, in the words of the chain's entries.
+struct RowChange {
+    std::string table, id;
+    bool gone = false;
+    std::string note;  // what of its body
+};
+Expected<std::vector<RowChange>> save_rows_of(Database& db, const Project& project);
+Expected<void> chain_changes(Database& db, const std::string& person, const std::vector<RowChange>& changes);
 Expected<Project> load_rows_of(Database& db);
 
 struct ProjectFile::Impl {
     std::filesystem::path path;
     mutable Database db;
+    std::optional<Person> person = {};
+    std::optional<Error> trouble = {};  // why nobody works with the file
+    // The last edit and the setup that a push was found to be as saved with.
+    std::int64_t pushed_edit = -1;
+    Digest pushed_setup = {};
+    std::string name() const { return person ? person->name : std::string(); }
     Impl(std::filesystem::path p, Database d) : path(std::move(p)), db(std::move(d)) {}
 };
 

@@ -574,6 +574,18 @@ void describe(A& a, DriftWatch& v) {
     }
 }
 template <class A>
+void describe(A& a, FixtureElement& v) {
+    a("id", v.id);
+    a("at_mm", v.at_mm);
+    a("directions", v.directions);
+}
+template <class A>
+void describe(A& a, Fixture& v) {
+    a("id", v.id);
+    a("elements", v.elements);
+    a("carrier_pattern", v.carrier_pattern);
+}
+template <class A>
 void describe(A& a, DriftPoint& v) {
     a("id", v.id);
     a("run", v.run);
@@ -614,6 +626,7 @@ void describe(A& a, Project& v) {
     if (A::reading || !v.line.empty()) a("line", v.line);
     if (A::reading || !v.elastic.empty()) a("elastic", v.elastic);
     if (A::reading || v.drift) a("drift", v.drift);
+    if (A::reading || v.fixture) a("fixture", v.fixture);
 }
 
 // --- runs
@@ -872,6 +885,7 @@ SEAMWRIGHT_DOCUMENT(Spot);
 SEAMWRIGHT_DOCUMENT(Region);
 SEAMWRIGHT_DOCUMENT(RegionModes);
 SEAMWRIGHT_DOCUMENT(DriftWatch);
+SEAMWRIGHT_DOCUMENT(Fixture);
 SEAMWRIGHT_DOCUMENT(DriftPoint);
 SEAMWRIGHT_DOCUMENT(PanelJob);
 SEAMWRIGHT_DOCUMENT(PanelMeasurement);

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <set>
 
@@ -39,7 +40,8 @@ std::vector<std::string> ids_of(const std::vector<T>& items) {
 }
 
 // Rows that are not in `ids` go.
-Expected<void> delete_others(Database& db, const char* table, const std::vector<std::string>& ids) {
+Expected<void> delete_others(Database& db, const char* table, const std::vector<std::string>& ids,
+                             std::vector<RowChange>& changes) {
     SEAM_TRY(auto list, db.prepare(fmt::format("SELECT id FROM {}", table)));
     const std::set<std::string> keep(ids.begin(), ids.end());
     std::vector<std::string> gone;
@@ -52,15 +54,77 @@ Expected<void> delete_others(Database& db, const char* table, const std::vector<
     for (const std::string& id : gone) {
         remove.bind(1, id);
         SEAM_OK(remove.run());
+        changes.push_back({table, id, true, {}});
     }
+    return {};
+}
+
+std::string short_text(const nlohmann::json& value) {
+    constexpr std::size_t kLongest = 60;
+    const std::string text = dump_messages(value);
+    return text.size() > kLongest ? utf8_text(text.substr(0, kLongest)) + "..." : text;
+}
+
+// What differs between two bodies, for people: "limits/translation_mm: 25.0 -> 10.0; ...".
+std::string difference_of(const std::string& before, const std::string& after) {
+    constexpr std::size_t kMost = 8;
+    const auto old = parse_json(before, {}), made = parse_json(after, {});
+    if (!old || !made) return {};
+    std::vector<std::string> parts;
+    const auto patch = nlohmann::json::diff(*old, *made);
+    for (const auto& step : patch) {
+        const std::string path = step.at("path").get<std::string>(), op = step.at("op").get<std::string>();
+        if (parts.size() == kMost) {
+            parts.push_back(fmt::format("and {} more", patch.size() - kMost));
+            break;
+        }
+        const nlohmann::json::json_pointer at(path);
+        const auto value = [&](const nlohmann::json& of) {
+            return of.contains(at) ? short_text(of.at(at)) : std::string("none");
+        };
+        parts.push_back(fmt::format("{}: {} -> {}", path.empty() ? "all" : path.substr(1),
+                                    op == "add" ? "none" : value(*old),
+                                    op == "remove" ? "none" : short_text(step.at("value"))));
+    }
+    return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+// Its row as it stands, where the table has bodies and it is there.
+Expected<std::string> body_of(Database& db, const char* table, const std::string& id) {
+    SEAM_TRY(auto s, db.prepare(fmt::format("SELECT body FROM {} WHERE id = ?", table)));
+    s.bind(1, id);
+    SEAM_TRY(auto row, s.step());
+    std::string body = row ? s.text(0) : std::string();
+    s.reset();
+    return body;
+}
+
+// Runs a statement that writes the row `id` where it differs from what is stored, and says so.
+template <class Run>
+Expected<void> noting(Database& db, const char* table, const std::string& id, std::vector<RowChange>& changes,
+                      Run run) {
+    const bool has_body = std::string_view(table) != "project";
+    std::string before;
+    if (has_body) {
+        SEAM_TRY(before, body_of(db, table, id));
+    }
+    const auto count = sqlite3_total_changes(db.handle());
+    SEAM_OK(run());
+    if (sqlite3_total_changes(db.handle()) == count) return {};
+    RowChange change{table, id, false, {}};
+    if (!before.empty()) {
+        SEAM_TRY(const auto after, body_of(db, table, id));
+        change.note = difference_of(before, after);
+    }
+    changes.push_back(std::move(change));
     return {};
 }
 
 // Writes each row that differs from what is stored: `columns` after id and position.
 template <class T, class Bind>
 Expected<void> save_rows(Database& db, const char* table, const std::vector<std::string>& columns,
-                         const std::vector<T>& items, Bind bind) {
-    SEAM_OK(delete_others(db, table, ids_of(items)));
+                         const std::vector<T>& items, std::vector<RowChange>& changes, Bind bind) {
+    SEAM_OK(delete_others(db, table, ids_of(items), changes));
     std::string names = "id, position", values = "?1, ?2", sets = "position = excluded.position",
                 differs = "position IS NOT excluded.position";
     int number = 2;
@@ -79,7 +143,7 @@ Expected<void> save_rows(Database& db, const char* table, const std::vector<std:
     for (const T& item : items) {
         s.bind(1, item.id);
         s.bind(2, position++);
-        SEAM_OK(bind(s, item));
+        SEAM_OK(noting(db, table, item.id, changes, [&] { return bind(s, item); }));
     }
     return {};
 }
@@ -107,25 +171,28 @@ Expected<void> load_rows(Database& db, const char* sql, const char* kind, std::v
 }
 
 // None or one.
-std::vector<DriftWatch> drift_of(const Project& project) {
-    return project.drift ? std::vector<DriftWatch>{*project.drift} : std::vector<DriftWatch>{};
+template <class T>
+std::vector<T> one_or_none(const std::optional<T>& thing) {
+    return thing ? std::vector<T>{*thing} : std::vector<T>{};
 }
 
 }  // namespace
 
-Expected<void> save_rows_of(Database& db, const Project& project) {
-    for (const auto& sound :
-         {check_ids(db, "sensors", ids_of(project.sensors), "sensor"),
-          check_ids(db, "robots", ids_of(project.robots), "robot"),
-          check_ids(db, "calibrations", ids_of(project.calibrations), "calibration"),
-          check_ids(db, "spots", ids_of(project.spots), "spot"),
-          check_ids(db, "regions", ids_of(project.regions), "region"),
-          check_ids(db, "panel_jobs", ids_of(project.panel_jobs), "panel job"),
-          check_ids(db, "line", ids_of(project.line), "line link"),
-          check_ids(db, "part_types", ids_of(project.part_types), "part type"),
-          check_ids(db, "elastic", ids_of(project.elastic), "region with mode"),
-          check_ids(db, "drift_watch", ids_of(drift_of(project)), "drift watch"), check_part_types(project)})
-        if (!sound) return sound;
+Expected<std::vector<RowChange>> save_rows_of(Database& db, const Project& project) {
+    std::vector<RowChange> changes;
+    for (const auto& sound : {check_ids(db, "sensors", ids_of(project.sensors), "sensor"),
+                              check_ids(db, "robots", ids_of(project.robots), "robot"),
+                              check_ids(db, "calibrations", ids_of(project.calibrations), "calibration"),
+                              check_ids(db, "spots", ids_of(project.spots), "spot"),
+                              check_ids(db, "regions", ids_of(project.regions), "region"),
+                              check_ids(db, "panel_jobs", ids_of(project.panel_jobs), "panel job"),
+                              check_ids(db, "line", ids_of(project.line), "line link"),
+                              check_ids(db, "part_types", ids_of(project.part_types), "part type"),
+                              check_ids(db, "elastic", ids_of(project.elastic), "region with mode"),
+                              check_ids(db, "drift_watch", ids_of(one_or_none(project.drift)), "drift watch"),
+                              check_ids(db, "fixture", ids_of(one_or_none(project.fixture)), "fixture"),
+                              check_part_types(project)})
+        if (!sound) return tl::unexpected(sound.error());
 
     const char* name_row = R"(
         INSERT INTO project (id, name, created_utc, checksum) VALUES (1, ?1, ?2, row_checksum(1, ?1, ?2))
@@ -135,7 +202,7 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
     SEAM_OK(dump_document(project.name, "project name"));
     name.bind(1, project.name);
     name.bind(2, utc_now());
-    SEAM_OK(name.run());
+    SEAM_OK(noting(db, "project", "1", changes, [&] { return name.run(); }));
 
     const char* required_row = R"(
         INSERT INTO requirements (id, body, checksum) VALUES (1, ?1, row_checksum(1, ?1))
@@ -144,7 +211,7 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
     SEAM_TRY(auto required, db.prepare(required_row));
     SEAM_TRY(auto required_text, row_text(project.requirements, "requirements", kRow));
     required.bind(1, required_text);
-    SEAM_OK(required.run());
+    SEAM_OK(noting(db, "requirements", "1", changes, [&] { return required.run(); }));
 
     const char* part_row = R"(
         INSERT INTO part (id, body, mesh, checksum) VALUES (1, ?1, ?2, row_checksum(1, ?1, ?2))
@@ -154,7 +221,7 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
     SEAM_TRY(auto part_text, row_text(project.part, "part", kRow));
     part.bind(1, part_text);
     part.bind(2, std::span<const std::byte>(project.part.mesh_ply));
-    SEAM_OK(part.run());
+    SEAM_OK(noting(db, "part", "1", changes, [&] { return part.run(); }));
 
     const auto device = [](const char* kind) {
         return [kind](Statement& s, const auto& item) -> Expected<void> {
@@ -164,11 +231,11 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
             return s.run();
         };
     };
-    SEAM_OK(save_rows(db, "sensors", {"driver", "body"}, project.sensors, device("sensor")));
-    SEAM_OK(save_rows(db, "robots", {"driver", "body"}, project.robots, device("robot")));
+    SEAM_OK(save_rows(db, "sensors", {"driver", "body"}, project.sensors, changes, device("sensor")));
+    SEAM_OK(save_rows(db, "robots", {"driver", "body"}, project.robots, changes, device("robot")));
     auto calibrations =
         save_rows(db, "calibrations", {"sensor_id", "robot_id", "created_utc", "verdict", "body"},
-                  project.calibrations, [](Statement& s, const Calibration& c) -> Expected<void> {
+                  project.calibrations, changes, [](Statement& s, const Calibration& c) -> Expected<void> {
                       SEAM_TRY(auto text, row_text(c, "calibration " + c.id, kRow));
                       s.bind(3, c.sensor_id);
                       s.bind(4, c.robot_id);
@@ -177,10 +244,10 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
                       s.bind(7, text);
                       return s.run();
                   });
-    if (!calibrations) return calibrations;
+    if (!calibrations) return tl::unexpected(calibrations.error());
     auto spots =
         save_rows(db, "spots", {"sensor_id", "robot_id", "body", "reference_profile", "template_profile"},
-                  project.spots, [](Statement& s, const Spot& spot) -> Expected<void> {
+                  project.spots, changes, [](Statement& s, const Spot& spot) -> Expected<void> {
                       SEAM_TRY(auto text, row_text(spot, "spot " + spot.id, kRow));
                       auto reference = pack_profile(spot.reference_profile);
                       auto model = pack_profile(spot.feature.template_profile);
@@ -197,55 +264,77 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
                       s.bind(7, std::span<const std::byte>(*model));
                       return s.run();
                   });
-    if (!spots) return spots;
-    auto regions = save_rows(db, "regions", {"frame_name", "body"}, project.regions,
+    if (!spots) return tl::unexpected(spots.error());
+    auto regions = save_rows(db, "regions", {"frame_name", "body"}, project.regions, changes,
                              [](Statement& s, const Region& region) -> Expected<void> {
                                  SEAM_TRY(auto text, row_text(region, "region " + region.id, kRow));
                                  s.bind(3, region.frame_name);
                                  s.bind(4, text);
                                  return s.run();
                              });
-    if (!regions) return regions;
-    SEAM_OK(save_rows(db, "panel_jobs", {"frame_name", "body"}, project.panel_jobs,
+    if (!regions) return tl::unexpected(regions.error());
+    SEAM_OK(save_rows(db, "panel_jobs", {"frame_name", "body"}, project.panel_jobs, changes,
                       [](Statement& s, const PanelJob& job) -> Expected<void> {
                           SEAM_TRY(auto text, row_text(job, "panel job " + job.id, kPanelRow));
                           s.bind(3, job.frame_name);
                           s.bind(4, text);
                           return s.run();
                       }));
-    SEAM_OK(save_rows(db, "part_types", {"body"}, project.part_types,
+    SEAM_OK(save_rows(db, "part_types", {"body"}, project.part_types, changes,
                       [](Statement& s, const PartType& type) -> Expected<void> {
                           SEAM_TRY(auto text, row_text(type, "part type " + type.id, kRow));
                           s.bind(3, text);
                           return s.run();
                       }));
-    SEAM_OK(save_rows(db, "line", {"protocol", "body"}, project.line,
+    SEAM_OK(save_rows(db, "line", {"protocol", "body"}, project.line, changes,
                       [](Statement& s, const LineSetup& link) -> Expected<void> {
                           SEAM_TRY(auto text, row_text(link, "line link " + link.id, kRow));
                           s.bind(3, link.protocol);
                           s.bind(4, text);
                           return s.run();
                       }));
-    SEAM_OK(save_rows(db, "elastic", {"body"}, project.elastic,
+    SEAM_OK(save_rows(db, "elastic", {"body"}, project.elastic, changes,
                       [](Statement& s, const RegionModes& modes) -> Expected<void> {
                           SEAM_TRY(auto text, row_text(modes, "modes of region " + modes.id, kRow));
                           s.bind(3, text);
                           return s.run();
                       }));
-    return save_rows(db, "drift_watch", {"body"}, drift_of(project),
-                     [](Statement& s, const DriftWatch& drift) -> Expected<void> {
-                         SEAM_TRY(auto text, row_text(drift, "drift watch", kRow));
-                         s.bind(3, text);
-                         return s.run();
-                     });
+    SEAM_OK(save_rows(db, "drift_watch", {"body"}, one_or_none(project.drift), changes,
+                      [](Statement& s, const DriftWatch& drift) -> Expected<void> {
+                          SEAM_TRY(auto text, row_text(drift, "drift watch", kRow));
+                          s.bind(3, text);
+                          return s.run();
+                      }));
+    SEAM_OK(save_rows(db, "fixture", {"body"}, one_or_none(project.fixture), changes,
+                      [](Statement& s, const Fixture& fixture) -> Expected<void> {
+                          SEAM_TRY(auto text, row_text(fixture, "fixture", kRow));
+                          s.bind(3, text);
+                          return s.run();
+                      }));
+    return changes;
+}
+
+Expected<void> chain_changes(Database& db, const std::string& person, const std::vector<RowChange>& changes) {
+    for (const RowChange& change : changes) {
+        const std::string subject = fmt::format("{} {}", change.table, change.id);
+        if (change.gone) {
+            SEAM_OK(append_chain(db, person, "project", subject, {}, change.note));
+            continue;
+        }
+        SEAM_TRY(const Digest digest, row_digest(db, change.table, change.id));
+        SEAM_OK(append_chain(db, person, "project", subject, digest, change.note));
+    }
+    return {};
 }
 
 Expected<Project> load_rows_of(Database& db) {
-    for (const char* table : {"project", "requirements", "part", "sensors", "robots", "calibrations", "spots",
-                              "regions", "panel_jobs", "line", "part_types", "elastic", "drift_watch"})
+    for (const char* table :
+         {"project", "requirements", "part", "sensors", "robots", "calibrations", "spots", "regions",
+          "panel_jobs", "line", "part_types", "elastic", "drift_watch", "fixture"})
         SEAM_OK(check_rows(db, table));
     Project project;
     std::vector<DriftWatch> drift;
+    std::vector<Fixture> fixture;
     SEAM_TRY(auto name, db.prepare("SELECT name FROM project"));
     SEAM_OK(for_each_row(name, [&](Statement& row) -> Expected<void> {
         project.name = row.text(0);
@@ -279,9 +368,11 @@ Expected<Project> load_rows_of(Database& db) {
           load_rows(db, "SELECT id, body FROM part_types ORDER BY position", "part type", project.part_types),
 
           load_rows(db, "SELECT id, body FROM elastic ORDER BY position", "modes of region", project.elastic),
-          load_rows(db, "SELECT id, body FROM drift_watch ORDER BY position LIMIT 1", "drift watch", drift)})
+          load_rows(db, "SELECT id, body FROM drift_watch ORDER BY position LIMIT 1", "drift watch", drift),
+          load_rows(db, "SELECT id, body FROM fixture ORDER BY position LIMIT 1", "fixture", fixture)})
         if (!done) return tl::unexpected(done.error());
     if (!drift.empty()) project.drift = std::move(drift.front());
+    if (!fixture.empty()) project.fixture = std::move(fixture.front());
     return project;
 }
 

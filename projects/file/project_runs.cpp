@@ -1,16 +1,19 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <set>
 
 #include "devices/capture/profile_blob.h"
 #include "projects/file/project_file_detail.h"
 #include "projects/file/row_checksum.h"
 #include "projects/file/schema.h"
+#include "projects/model/part_types.h"
 
 namespace seamwright {
 namespace {
 
-Expected<void> insert_event(Database& db, const EventRecord& event, std::int64_t run) {
+Expected<std::int64_t> insert_event(Database& db, const std::string& person, const EventRecord& event,
+                                    std::int64_t run) {
     SEAM_TRY(auto s, db.prepare("INSERT INTO events (utc, run, kind, subject, text) VALUES (?, ?, ?, ?, ?)"));
     s.bind(1, event.utc.empty() ? utc_now() : utf8_text(event.utc));
     s.bind(2, run);
@@ -18,7 +21,11 @@ Expected<void> insert_event(Database& db, const EventRecord& event, std::int64_t
     s.bind(4, utf8_text(event.subject));
     s.bind(5, stored_text(event.text));
     SEAM_OK(s.run());
-    return seal_row(db, "events", "id", db.last_rowid());
+    const std::int64_t id = db.last_rowid();
+    SEAM_OK(seal_row(db, "events", "id", id));
+    SEAM_TRY(const Digest digest, row_digest(db, "events", id));
+    SEAM_OK(append_chain(db, person, "event", fmt::format_int(id).c_str(), digest));
+    return id;
 }
 
 Expected<void> insert_regions(Database& db, const RunRecord& run, std::int64_t number) {
@@ -52,9 +59,10 @@ Expected<void> insert_panel(Database& db, const RunRecord& run, std::int64_t num
     return s.run();
 }
 
-// Behind the `stored` captures that the run has already.
-Expected<void> insert_captures(Database& db, std::span<const Capture> captures, std::size_t stored,
-                               std::int64_t number) {
+// Behind those captures of the run that are `stored`; adds the digests of the rows it makes.
+Expected<void> insert_captures(Database& db, std::span<const Capture> all, std::int64_t number,
+                               StoredMeasurements& stored) {
+    const auto captures = all.subspan(stored.captures);
     SEAM_TRY(auto blobs, pack_captures(captures));
     SEAM_TRY(auto chunks, db.prepare("SELECT ifnull(max(chunk) + 1, 0) FROM captures WHERE run = ?"));
     chunks.bind(1, number);
@@ -68,6 +76,9 @@ Expected<void> insert_captures(Database& db, std::span<const Capture> captures, 
         s.bind(3, std::int64_t{blobs[i].captures});
         s.bind(4, std::span<const std::byte>(blobs[i].bytes));
         SEAM_OK(s.run());
+        const std::array<std::int64_t, 3> front{number, first_chunk + static_cast<std::int64_t>(i),
+                                                std::int64_t{blobs[i].captures}};
+        stored.capture_rows.push_back(blob_row_digest("captures", front, blobs[i].bytes));
     }
     SEAM_TRY(auto image, db.prepare("INSERT INTO images (run, capture, width, height, bit_depth, crc, data) "
                                     "VALUES (?, ?, ?, ?, ?, ?, "
@@ -80,14 +91,19 @@ Expected<void> insert_captures(Database& db, std::span<const Capture> captures, 
             return input_error("the image's pixels do not fill its size",
                                Text("capture of spot {}", captures[i].spot_id));
         image.bind(1, number);
-        image.bind(2, static_cast<std::int64_t>(stored + i));
+        image.bind(2, static_cast<std::int64_t>(stored.captures + i));
         image.bind(3, std::int64_t{raw.width});
         image.bind(4, std::int64_t{raw.height});
         image.bind(5, std::int64_t{raw.bit_depth});
         image.bind(6, std::int64_t{crc_of(std::span<const std::byte>(raw.pixels))});
         image.bind(7, std::span<const std::byte>(raw.pixels));
         SEAM_OK(image.run());
+        const std::array<std::int64_t, 5> front{number, static_cast<std::int64_t>(stored.captures + i),
+                                                std::int64_t{raw.width}, std::int64_t{raw.height},
+                                                std::int64_t{raw.bit_depth}};
+        stored.image_rows.push_back(blob_row_digest("images", front, raw.pixels));
     }
+    stored.captures += captures.size();
     return {};
 }
 
@@ -111,17 +127,17 @@ Expected<void> insert_spots(Database& db, const RunRecord& run, std::int64_t num
 }
 
 // What a run's row refers to, but for what is stored.
-Expected<void> insert_rest(Database& db, const RunRecord& run, std::int64_t number,
-                           const StoredMeasurements& stored) {
+Expected<void> insert_rest(Database& db, const std::string& person, const RunRecord& run, std::int64_t number,
+                           StoredMeasurements stored) {
     const auto open = [&](std::size_t i) { return stored.spots.count(i) == 0; };
     SEAM_OK(insert_spots(db, run, number, open));
     SEAM_OK(insert_regions(db, run, number));
     SEAM_OK(insert_panel(db, run, number));
-    if (auto done =
-            insert_captures(db, std::span(run.captures).subspan(stored.captures), stored.captures, number);
-        !done)
-        return done;
-    for (const EventRecord& event : run.events) SEAM_OK(insert_event(db, event, number));
+    SEAM_OK(insert_captures(db, run.captures, number, stored));
+    if (!stored.capture_rows.empty() || !stored.image_rows.empty())
+        SEAM_OK(append_chain(db, person, "captures", fmt::format_int(number).c_str(),
+                             captures_digest(stored.capture_rows, stored.image_rows)));
+    for (const EventRecord& event : run.events) SEAM_OK(insert_event(db, person, event, number));
     return {};
 }
 
@@ -178,6 +194,7 @@ Expected<RunSetup> RunSetup::of(const Project& project) {
     slim.requirements.acceptance = {};
     slim.line.clear();
     slim.drift.reset();
+    slim.fixture.reset();
     std::erase_if(slim.elastic, [](const RegionModes& modes) { return !modes.on; });
     for (Calibration& c : slim.calibrations) {
         c.raw = nlohmann::json::object();
@@ -208,6 +225,8 @@ Expected<std::int64_t> ProjectFile::setup_id(const RunSetup& setup) {
     SEAM_OK(insert.run());
     const std::int64_t id = db.last_rowid();
     SEAM_OK(seal_row(db, "setups", "id", id));
+    SEAM_TRY(const Digest digest, row_digest(db, "setups", id));
+    SEAM_OK(append_chain(db, impl_->name(), "setup", fmt::format_int(id).c_str(), digest));
     return id;
 }
 
@@ -220,8 +239,44 @@ Expected<std::int64_t> ProjectFile::setup_of(const Project& project) {
     return id;
 }
 
+// The rows of the run as they stand. Within the caller's transaction.
+Expected<void> ProjectFile::chain_run(std::int64_t number) {
+    SEAM_TRY(const Digest digest, run_digest(impl_->db, number));
+    return append_chain(impl_->db, impl_->name(), "run", fmt::format_int(number).c_str(), digest);
+}
+
+// Who may not teach pushes with the project as it was saved, not with what stands on his screen. Who answered of the
+// devices is no part of it: the gate compares that.
+Expected<void> ProjectFile::may_push_with(const RunSetup& setup, const std::string& type_id) {
+    Impl& i = *impl_;
+    if (!i.person || allows(i.person->role, Deed::teach)) return {};
+    SEAM_TRY(const std::int64_t edit,
+             i.db.integer("SELECT ifnull(max(number), 0) FROM chain WHERE kind = 'project'"));
+    const Digest asked = sha256(setup.text_);
+    if (edit == i.pushed_edit && asked == i.pushed_setup) return {};
+    const auto plain = [](Project project) {
+        for (SensorSetup& s : project.sensors) s.identity = {};
+        for (RobotSetup& r : project.robots) r.identity = {};
+        return RunSetup::of(project);
+    };
+    SEAM_TRY(const auto stored, load_rows_of(i.db));
+    SEAM_TRY(const auto saved, plain(type_id.empty() ? stored : of_type(stored, type_id)));
+    SEAM_TRY(const auto wanted, row_value<Project>(setup.text_, "setup of the run", i.path.string(), kSetup));
+    SEAM_TRY(const auto given, plain(wanted));
+    if (given.text_ != saved.text_)
+        return usage_error(Text("what {} would push with is not the saved project", i.person->name),
+                           i.path.string(), "an engineer has to save it first");
+    i.pushed_edit = edit;
+    i.pushed_setup = asked;
+    return {};
+}
+
 // Within the caller's transaction.
 Expected<std::int64_t> ProjectFile::insert_run(const RunRecord& run, const RunSetup& setup) {
+    if (run.push) {
+        SEAM_OK(may(Deed::push));
+        SEAM_OK(may_push_with(setup, run.type_id));
+    }
     auto setup_number = setup_id(setup);
     if (!setup_number) return setup_number;
     SEAM_TRY(auto s, impl_->db.prepare("INSERT INTO runs (part_id, started_utc, finished_utc, push, status, "
@@ -251,7 +306,8 @@ Expected<std::int64_t> ProjectFile::append_run(const RunRecord& run, const Proje
     SEAM_TRY(auto transaction, Transaction::begin(impl_->db));
     auto number = insert_run(run, text);
     if (!number) return number;
-    SEAM_OK(insert_rest(impl_->db, run, *number, {}));
+    SEAM_OK(insert_rest(impl_->db, impl_->name(), run, *number, {}));
+    SEAM_OK(chain_run(*number));
     SEAM_OK(transaction.commit());
     return number;
 }
@@ -260,6 +316,7 @@ Expected<std::int64_t> ProjectFile::begin_run(const RunRecord& run, const RunSet
     SEAM_TRY(auto transaction, Transaction::begin(impl_->db));
     auto number = insert_run(run, setup);
     if (!number) return number;
+    SEAM_OK(chain_run(*number));
     SEAM_OK(transaction.commit());
     return number;
 }
@@ -270,13 +327,10 @@ Expected<void> ProjectFile::append_measured(const RunRecord& run, StoredMeasurem
         return run.spots[i].capture >= 0 && then.spots.insert(i).second;
     };
     SEAM_TRY(auto transaction, Transaction::begin(impl_->db));
-    if (auto done = insert_captures(impl_->db, std::span(run.captures).subspan(stored.captures),
-                                    stored.captures, run.number);
-        !done)
-        return done;
+    SEAM_OK(insert_captures(impl_->db, run.captures, run.number, then));
     SEAM_OK(insert_spots(impl_->db, run, run.number, measured));
+    SEAM_OK(chain_run(run.number));
     SEAM_OK(transaction.commit());
-    then.captures = run.captures.size();
     stored = std::move(then);
     return {};
 }
@@ -295,7 +349,8 @@ Expected<void> ProjectFile::finish_run(const RunRecord& run, const StoredMeasure
     if (!row) return input_error(Text("there is no run {}", run.number), impl_->path.string());
     SEAM_OK(s.run());
     SEAM_OK(seal_row(impl_->db, "runs", "number", run.number));
-    SEAM_OK(insert_rest(impl_->db, run, run.number, stored));
+    SEAM_OK(insert_rest(impl_->db, impl_->name(), run, run.number, stored));
+    SEAM_OK(chain_run(run.number));
     return transaction.commit();
 }
 
@@ -322,15 +377,19 @@ Expected<void> ProjectFile::update_run(const RunRecord& run) {
     }
     SEAM_OK(insert_regions(db, run, run.number));
     SEAM_OK(insert_panel(db, run, run.number));
+    SEAM_OK(chain_run(run.number));
     return transaction.commit();
 }
 
 Expected<std::int64_t> ProjectFile::append_event(const EventRecord& event) {
     SEAM_TRY(auto transaction, Transaction::begin(impl_->db));
-    SEAM_OK(insert_event(impl_->db, event, event.run));
-    const std::int64_t id = impl_->db.last_rowid();
+    SEAM_TRY(const std::int64_t id, append_event_row(event));
     SEAM_OK(transaction.commit());
     return id;
+}
+
+Expected<std::int64_t> ProjectFile::append_event_row(const EventRecord& event) {
+    return insert_event(impl_->db, impl_->name(), event, event.run);
 }
 
 Expected<std::int64_t> ProjectFile::append_drift_point(const DriftPoint& point) {
@@ -343,6 +402,8 @@ Expected<std::int64_t> ProjectFile::append_drift_point(const DriftPoint& point) 
     SEAM_OK(s.run());
     const std::int64_t id = db.last_rowid();
     SEAM_OK(seal_row(db, "drift_points", "id", id));
+    SEAM_TRY(const Digest digest, row_digest(db, "drift_points", id));
+    SEAM_OK(append_chain(db, impl_->name(), "drift point", fmt::format_int(id).c_str(), digest));
     SEAM_OK(transaction.commit());
     return id;
 }
@@ -378,6 +439,8 @@ Expected<std::vector<DriftPoint>> ProjectFile::drift_points(std::int64_t newest)
 }
 
 Expected<std::int64_t> ProjectFile::append_evidence(const Evidence& evidence, const Project& setup) {
+    // A run without a screen is noted by itself; what else is proven is the work of who sets the cell up.
+    if (!std::holds_alternative<HeadlessRun>(evidence.what)) SEAM_OK(may(Deed::teach));
     SEAM_TRY(auto with, RunSetup::of(setup));
     Database& db = impl_->db;
     SEAM_TRY(auto transaction, Transaction::begin(db));
@@ -405,6 +468,8 @@ Expected<std::int64_t> ProjectFile::append_evidence(const Evidence& evidence, co
     SEAM_OK(s.run());
     const std::int64_t id = db.last_rowid();
     SEAM_OK(seal_row(db, "evidence", "id", id));
+    SEAM_TRY(const Digest digest, row_digest(db, "evidence", id));
+    SEAM_OK(append_chain(db, impl_->name(), "evidence", fmt::format_int(id).c_str(), digest, kind));
     SEAM_OK(transaction.commit());
     return id;
 }
@@ -546,10 +611,11 @@ Expected<Project> ProjectFile::load_run_setup(std::int64_t number) const {
 
 Expected<std::vector<EventRecord>> ProjectFile::events(std::int64_t run) const {
     SEAM_OK(check_rows(impl_->db, "events", run ? "run" : nullptr, run));
-    SEAM_TRY(auto s,
-             impl_->db.prepare(
-                 run ? "SELECT id, utc, run, kind, subject, text FROM events WHERE run = ? ORDER BY id"
-                     : "SELECT id, utc, run, kind, subject, text FROM events ORDER BY id"));
+    SEAM_TRY(auto s, impl_->db.prepare(fmt::format(
+                         "SELECT id, utc, run, kind, subject, text, ifnull((SELECT person FROM chain WHERE "
+                         "chain.kind = 'event' AND chain.subject = CAST(events.id AS TEXT)), '') FROM events "
+                         "{}ORDER BY id",
+                         run ? "WHERE run = ? " : "")));
     if (run) s.bind(1, run);
     std::vector<EventRecord> list;
     SEAM_OK(for_each_row(s, [&](Statement& row) -> Expected<void> {
@@ -562,6 +628,7 @@ Expected<std::vector<EventRecord>> ProjectFile::events(std::int64_t run) const {
         event.kind = *kind;
         event.subject = row.text(4);
         event.text = text_from_stored(row.text(5));
+        event.person = row.text(6);
         list.push_back(std::move(event));
         return {};
     }));
@@ -570,15 +637,52 @@ Expected<std::vector<EventRecord>> ProjectFile::events(std::int64_t run) const {
 
 Expected<void> ProjectFile::delete_run(std::int64_t number) {
     SEAM_TRY(auto transaction, Transaction::begin(impl_->db));
+    SEAM_OK(may(Deed::remove));
     SEAM_TRY(auto s, impl_->db.prepare("DELETE FROM runs WHERE number = ?"));
     s.bind(1, number);
+    const auto before = sqlite3_total_changes(impl_->db.handle());
     SEAM_OK(s.run());
+    if (sqlite3_total_changes(impl_->db.handle()) == before) return {};
+    SEAM_OK(append_chain(impl_->db, impl_->name(), "run", fmt::format_int(number).c_str(), {}));
     return transaction.commit();
+}
+
+Expected<std::vector<ChainEntry>> ProjectFile::chain(std::int64_t after, std::int64_t most) const {
+    SEAM_TRY(auto s,
+             impl_->db.prepare("SELECT number, utc, person, kind, subject, digest, note, hash FROM chain "
+                               "WHERE number > ? ORDER BY number LIMIT ?"));
+    s.bind(1, after);
+    s.bind(2, most > 0 ? most : -1);
+    std::vector<ChainEntry> entries;
+    SEAM_OK(for_each_row(s, [&](Statement& row) -> Expected<void> {
+        entries.push_back({row.integer(0), row.text(1), row.text(2), row.text(3), row.text(4),
+                           hex(row.blob(5)), row.text(6), hex(row.blob(7))});
+        return {};
+    }));
+    return entries;
+}
+
+Expected<std::vector<StoredEvent>> ProjectFile::stored_events() const {
+    SEAM_TRY(auto s, impl_->db.prepare("SELECT id, run, utc, kind, subject, text FROM events ORDER BY id"));
+    std::vector<StoredEvent> list;
+    SEAM_OK(for_each_row(s, [&](Statement& row) -> Expected<void> {
+        list.push_back({row.integer(0), row.integer(1), row.text(2), row.text(3), row.text(4), row.text(5)});
+        return {};
+    }));
+    return list;
+}
+
+Expected<std::vector<Error>> ProjectFile::check_chain() const {
+    return seamwright::check_chain(impl_->db);
 }
 
 std::vector<Error> ProjectFile::check() const {
     std::vector<Error> findings;
     Database& db = impl_->db;
+    if (auto chained = check_chain(); !chained)
+        findings.push_back(chained.error());
+    else
+        findings = std::move(*chained);
     auto integrity = db.prepare("PRAGMA integrity_check(20)");
     if (!integrity) return {integrity.error()};
     auto read = for_each_row(*integrity, [&](Statement& row) -> Expected<void> {

@@ -52,6 +52,8 @@ Expected<void> ProjectFile::append_scan(const StoredScan& scan) {
     s.bind(8, std::span<const std::byte>(scan.cloud_ply));
     SEAM_OK(s.run());
     SEAM_OK(seal_row(db, "scans", "id", db.last_rowid()));
+    SEAM_TRY(const Digest digest, row_digest(db, "scans", name));
+    SEAM_OK(append_chain(db, impl_->name(), "scan", name, digest));
     return transaction.commit();
 }
 
@@ -90,9 +92,11 @@ Expected<void> ProjectFile::delete_scan(const std::string& name) {
     SEAM_TRY(auto known, scans());
     if (std::ranges::find(known, name, &StoredScan::name) == known.end())
         return tl::unexpected(no_scan(name, impl_->path.string()));
+    SEAM_OK(may(Deed::remove));
     SEAM_TRY(auto s, db.prepare("DELETE FROM scans WHERE name = ?"));
     s.bind(1, name);
     SEAM_OK(s.run());
+    SEAM_OK(append_chain(db, impl_->name(), "scan", name, {}));
     return transaction.commit();
 }
 

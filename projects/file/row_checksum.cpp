@@ -9,7 +9,7 @@
 namespace seamwright {
 namespace {
 
-constexpr std::array<ChecksummedTable, 23> kTables{{
+constexpr std::array<ChecksummedTable, 25> kTables{{
     {"project", "name", "id, name, created_utc"},
     {"requirements", "id", "id, body"},
     {"part", "id", "id, body, mesh"},
@@ -25,6 +25,8 @@ constexpr std::array<ChecksummedTable, 23> kTables{{
     {"elastic", "id", "id, position, body", 9},
     {"drift_watch", "id", "id, position, body", 10},
     {"drift_points", "id", "id, run, body", 10},
+    {"users", "id", "id, role, password, created_utc", 12},
+    {"fixture", "id", "id, position, body", 12},
     {"scans", "name", "id, name, utc, sensor_id, robot_id, path, profiles, points, cloud", 10},
     {"setups", "id", "id, crc, body"},
     {"runs", "number", "number, part_id, started_utc, finished_utc, push, status, message, setup"},

@@ -35,7 +35,9 @@ class ValuesReader {
                     "ifnull(json_extract(body, '$.correction.status'), ''), "
                     "ifnull(json_extract(body, '$.correction.workobject_from_movedworkobject'), ''), "
                     "CASE run_regions.gate_passed WHEN 1 THEN '[]' "
-                    "ELSE ifnull(json_extract(body, '$.refusals'), '[]') END "
+                    "ELSE ifnull(json_extract(body, '$.refusals'), '[]') END, "
+                    "CASE ?4 WHEN 1 THEN ifnull(json_extract(body, '$.correction.covariance_random'), "
+                    "ifnull(json_extract(body, '$.correction.covariance'), '')) ELSE '' END "
                     "FROM run_regions JOIN runs ON run = number WHERE {} ORDER BY run, position",
                     regions),
               query("SELECT run, job_id, run_panels.gate_passed, "
@@ -57,6 +59,7 @@ class ValuesReader {
         s.bind(1, wanted_.since_utc);
         s.bind(2, wanted_.until_utc);
         s.bind(3, wanted_.type_id);
+        s.bind(4, std::int64_t{wanted_.covariances});  // of the one statement that asks for it
         return for_each_row(s, read);
     }
 
@@ -121,6 +124,13 @@ class ValuesReader {
                                    : Expected<Pose>(tl::unexpected(document.error()));
             if (!parsed) return wrong(of->number);
             r.workobject_from_movedworkobject = *parsed;
+            if (const std::string covariance = row.text(6); !covariance.empty()) {
+                const auto numbers = parse_json(covariance, "covariance");
+                auto read = numbers ? as_numbers(*numbers, 36, "covariance")
+                                    : Expected<std::vector<double>>(tl::unexpected(numbers.error()));
+                if (!read) return wrong(of->number);
+                r.covariance = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(read->data());
+            }
         }
         of->regions.push_back(std::move(r));
         return {};

@@ -17,6 +17,7 @@ struct RunValuesWanted {
     // Of runs started then or later, and before; as utc_now() writes it. Empty: all.
     std::string since_utc, until_utc;
     std::string type_id = {};  // of this part type alone; empty: all
+    bool covariances = false;  // RegionValue::covariance too
 };
 
 struct RegionValue {
@@ -26,6 +27,7 @@ struct RegionValue {
     std::optional<CorrectionStatus> status;
     Pose workobject_from_movedworkobject = Pose::Identity();  // of status ok and over_limit, else identity
     std::vector<Text> refusals;                               // empty when passed
+    Matrix6 covariance = Matrix6::Zero();                     // of one run's noise, where it was wanted
 };
 struct PlaceValue {
     std::string place_id;

@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 
+#include "projects/file/chain.h"
 #include "projects/file/row_checksum.h"
 
 namespace seamwright {
@@ -271,7 +272,37 @@ CREATE TABLE scans (
 // another spot.
 constexpr const char* kVersion11 = "";
 
-constexpr std::array<Migration, 11> kMigrations{{{1, kVersion1},
+// Who may do what, and the chain of all that was done (chain.h), which old files begin here. A program that knew nothing of
+// it would let everybody do everything, and leave the chain behind. What holds the part: the fixture.
+constexpr const char* kVersion12 = R"sql(
+CREATE TABLE users (
+    id TEXT PRIMARY KEY NOT NULL,
+    role TEXT NOT NULL,
+    password TEXT NOT NULL,
+    created_utc TEXT NOT NULL,
+    checksum INTEGER NOT NULL
+) STRICT;
+CREATE TABLE chain (
+    number INTEGER PRIMARY KEY,
+    utc TEXT NOT NULL,
+    person TEXT NOT NULL,
+    kind TEXT NOT NULL,
+    subject TEXT NOT NULL,
+    digest BLOB NOT NULL,
+    note TEXT NOT NULL,
+    hash BLOB NOT NULL
+) STRICT;
+CREATE INDEX chain_by_subject ON chain (kind, subject);
+CREATE TABLE fixture (
+    id TEXT PRIMARY KEY NOT NULL,
+    position INTEGER NOT NULL,
+    body TEXT NOT NULL,
+    checksum INTEGER NOT NULL
+) STRICT;
+)sql";
+constexpr std::int32_t kChained = 12;  // the first version with a chain
+
+constexpr std::array<Migration, 12> kMigrations{{{1, kVersion1},
                                                  {2, kVersion2},
                                                  {3, kVersion3},
                                                  {4, kVersion4},
@@ -281,7 +312,8 @@ constexpr std::array<Migration, 11> kMigrations{{{1, kVersion1},
                                                  {8, kVersion8},
                                                  {9, kVersion9},
                                                  {10, kVersion10},
-                                                 {11, kVersion11}}};
+                                                 {11, kVersion11},
+                                                 {12, kVersion12}}};
 
 // The tables of a fresh file of that version; made once for each version, since making them costs more than
 // checking a file does.
@@ -314,6 +346,7 @@ Expected<void> migrate(Database& db, std::int32_t until) {
         if (step.version <= version || step.version > until) continue;
         SEAM_OK(db.execute(step.sql));
         SEAM_OK(db.execute(fmt::format("PRAGMA user_version = {}", step.version)));
+        if (step.version == kChained) SEAM_OK(begin_chain(db, static_cast<std::int32_t>(version)));
     }
     SEAM_OK(db.execute(fmt::format("PRAGMA application_id = {}", kApplicationId)));
     return transaction.commit();

@@ -143,6 +143,7 @@ struct EventRecord {
     EventKind kind = EventKind::note;
     std::string subject;  // region, frame, sensor, robot
     Text text;
+    std::string person = {};  // who was signed in, as the file's chain says; empty: nobody
 };
 
 enum class RunStatus {

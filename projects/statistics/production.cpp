@@ -48,7 +48,9 @@ Expected<void> add_file(Production& p, const std::filesystem::path& path, const 
     SEAM_TRY(auto file, ProjectFile::open(path, FileAccess::read_only));
     SEAM_TRY(auto project, file.load());
     SEAM_TRY(auto evidence, file.evidence());
-    SEAM_TRY(auto runs, file.run_values(wanted));
+    RunValuesWanted values = wanted;
+    values.covariances |= project.fixture.has_value();  // to say what has moved
+    SEAM_TRY(auto runs, file.run_values(values));
     const Purposes purposes(evidence);
     std::set<std::int64_t> setups;
     for (RunValues& run : runs) {

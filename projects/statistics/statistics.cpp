@@ -394,6 +394,17 @@ Expected<Statistics> production_statistics(const std::vector<std::filesystem::pa
     s.options = options;
     s.production = std::move(production);
     SEAM_OK(Maker(s).make());
+    const auto& read = s.production.files;
+    const bool one_kind =
+        read.size() == 1 && (read.front().project.part_types.size() < 2 || !options.runs.type_id.empty());
+    if (one_kind && read.front().project.fixture) {
+        CarrierDiagnosisOptions how;
+        how.runs = options.runs;
+        if (auto moved = diagnose_production(s.production, how))
+            s.diagnosis = std::move(*moved);
+        else
+            s.caveats.push_back(moved.error().text());
+    }
     return s;
 }
 

@@ -26,7 +26,7 @@
 #include "core/statistics/capability.h"
 #include "core/statistics/ewma.h"
 #include "core/statistics/trend.h"
-#include "projects/statistics/production.h"
+#include "projects/statistics/diagnosis.h"
 
 namespace seamwright {
 
@@ -93,6 +93,7 @@ struct Statistics {
     std::vector<RegionStatistics> regions;
     std::vector<UnmeasuredSpot> unmeasured;  // most frequent first
     std::optional<CycleTime> cycle;
+    std::optional<CarrierDiagnosis> diagnosis;  // of a project with a fixture
     std::vector<Text> caveats;
     int count(RunStatus status) const { return by_status[static_cast<std::size_t>(status)]; }
 };

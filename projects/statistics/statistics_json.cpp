@@ -174,6 +174,7 @@ nlohmann::json statistics_json(const Statistics& s) {
                 {"unmeasured", std::move(unmeasured)},
                 {"cycle", std::move(cycle)},
                 {"caveats", s.caveats}};
+    if (s.diagnosis) out["diagnosis"] = diagnosis_json(*s.diagnosis);
     if (!by_type.empty()) out["by_type"] = by_type;
     return out;
 }

@@ -22,6 +22,7 @@ class Writer {
     void write(const std::string& program) {
         summary();
         for (const RegionStatistics& r : s_.regions) region(r);
+        if (s_.diagnosis) write_diagnosis(*s_.diagnosis, language_, page_);
         unmeasured();
         cycle();
         page_.heading(t("What to bear in mind"));

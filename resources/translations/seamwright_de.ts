@@ -2891,6 +2891,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
 <context>
     <name>seamwright::EventList</name>
     <message>
+        <source>Person</source>
+        <translation>Person</translation>
+    </message>
+    <message>
         <source>Event log</source>
         <translation>Ereignisprotokoll</translation>
     </message>
@@ -3610,6 +3614,42 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
 </context>
 <context>
     <name>seamwright::MainWindow</name>
+    <message>
+        <source>Sign in...</source>
+        <translation>Anmelden...</translation>
+    </message>
+    <message>
+        <source>Sign out</source>
+        <translation>Abmelden</translation>
+    </message>
+    <message>
+        <source>Sign out by itself...</source>
+        <translation>Von selbst abmelden...</translation>
+    </message>
+    <message>
+        <source>Sign out by itself</source>
+        <translation>Von selbst abmelden</translation>
+    </message>
+    <message>
+        <source>Minutes without mouse and keyboard; 0: never</source>
+        <translation>Minuten ohne Maus und Tastatur; 0: nie</translation>
+    </message>
+    <message>
+        <source>Who is signed in</source>
+        <translation>Wer angemeldet ist</translation>
+    </message>
+    <message>
+        <source>nobody signed in</source>
+        <translation>niemand angemeldet</translation>
+    </message>
+    <message>
+        <source>Signed out: nobody worked for %1 minutes.</source>
+        <translation>Abgemeldet: %1 Minuten lang hat niemand gearbeitet.</translation>
+    </message>
+    <message>
+        <source>The project has no users: nobody is asked. &quot;seamwright user add&quot; adds one.</source>
+        <translation>Das Projekt hat keine Benutzer: niemand wird gefragt. „seamwright user add“ legt einen an.</translation>
+    </message>
     <message>
         <source>autosaved %1</source>
         <translation>automatisch gesichert %1</translation>
@@ -6165,6 +6205,61 @@ und %1 weitere</translation>
     <message>
         <source>sensor %1   not connected</source>
         <translation>Sensor %1   nicht verbunden</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::SignInDialog</name>
+    <message>
+        <source>service</source>
+        <translation>Dienst</translation>
+    </message>
+    <message>
+        <source>operator</source>
+        <translation>Bediener</translation>
+    </message>
+    <message>
+        <source>engineer</source>
+        <translation>Techniker</translation>
+    </message>
+    <message>
+        <source>administrator</source>
+        <translation>Administrator</translation>
+    </message>
+    <message>
+        <source>Sign in</source>
+        <translation>Anmelden</translation>
+    </message>
+    <message>
+        <source>The project has users: to teach, to change limits and to push somebody signs in. To look at it and to measure nobody has to.</source>
+        <translation>Das Projekt hat Benutzer: zum Einlernen, zum Ändern von Grenzen und zum Übertragen meldet sich jemand an. Zum Ansehen und zum Messen muss es niemand.</translation>
+    </message>
+    <message>
+        <source>User</source>
+        <translation>Benutzer</translation>
+    </message>
+    <message>
+        <source>Who works</source>
+        <translation>Wer arbeitet</translation>
+    </message>
+    <message>
+        <source>Password</source>
+        <translation>Passwort</translation>
+    </message>
+    <message>
+        <source>After three wrong ones it takes a while until the next is looked at</source>
+        <translation>Nach drei falschen dauert es eine Weile, bis das nächste angesehen wird</translation>
+    </message>
+    <message>
+        <source>Takes a moment</source>
+        <translation>Dauert einen Augenblick</translation>
+    </message>
+    <message>
+        <source>Only look</source>
+        <translation>Nur ansehen</translation>
+    </message>
+    <message>
+        <source>Nobody signs in</source>
+        <translation>Niemand meldet sich an</translation>
     </message>
 </context>
 </TS>

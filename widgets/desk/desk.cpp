@@ -188,6 +188,8 @@ void Desk::select_measured_type() {
 
 void Desk::take_over(ProjectFile file, Project project) {
     file_.emplace(std::move(file));
+    person_ = file_->person();
+    if (!person_) signed_in_.reset();
     project_ = std::move(project);
     facts_ = {};
     undo_.clear();
@@ -195,6 +197,7 @@ void Desk::take_over(ProjectFile file, Project project) {
     state_ = std::make_shared<const StationState>();
     recovery_writer_.open(file_->path());
     worker_.open(file_->path(), project_);
+    worker_.act_for(signed_in_);
     selection_.select_spot(project_.spots.empty() ? "" : project_.spots.front().id);
     selection_.select_region(project_.regions.empty() ? "" : project_.regions.front().id);
     selection_.select_sensor(project_.sensors.empty() ? "" : project_.sensors.front().id);
@@ -203,6 +206,7 @@ void Desk::take_over(ProjectFile file, Project project) {
     set_recipes();
     derive();
     emit opened();
+    emit person_changed();
     emit modified_changed(false);
     emit project_changed();
     emit runs_changed();
@@ -244,6 +248,7 @@ Expected<void> Desk::open(const std::filesystem::path& path) {
     drop_kept();
     recovery_writer_.flush();
     auto found = find_recovery(path, project);
+    sign_out("signed out: the project was opened anew");
     recovery_.reset();
     QString told;
     if (found) {
@@ -312,6 +317,7 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
     SEAM_OK(file_->copy_to(part));
     {
         SEAM_TRY(auto copy, ProjectFile::open(part));
+        if (signed_in_) SEAM_OK(copy.act_for(*signed_in_));
         SEAM_OK(copy.save(project_));
     }
     discard_recovery(path);  // of a file that is replaced; must not meet the one that takes its name
@@ -322,6 +328,7 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
     if (auto copied = CalibrationSession::copy_all(file_->path(), path); !copied)
         emit trouble(shown_error(copied.error()));
     SEAM_TRY(auto file, ProjectFile::open(path));
+    if (signed_in_) SEAM_OK(file.act_for(*signed_in_));
     const std::string spot = selection_.spot(), region = selection_.region();
     const bool connected = state_->connected;
     recovery_.reset();
@@ -334,6 +341,7 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
 }
 
 void Desk::close() {
+    sign_out("signed out: the project was closed");
     worker_.close();
     drop_kept();
     recovery_writer_.close();
@@ -347,6 +355,48 @@ void Desk::close() {
     derive();
     emit opened();
     emit project_changed();
+}
+
+// --------------------------------------------------------------------------------------------------- who
+
+bool Desk::asks_who() const {
+    return !users().empty();
+}
+
+std::vector<User> Desk::users() const {
+    if (!file_) return {};
+    auto users = file_->users();
+    return users ? std::move(*users) : std::vector<User>{};
+}
+
+Expected<void> Desk::sign_in(const std::string& name, const std::string& password) {
+    if (!file_) return usage_error("no project is open", {}, "open or make one");
+    SEAM_TRY(auto signed_in, file_->sign_in(name, password));
+    person_ = signed_in.person();
+    signed_in_ = std::move(signed_in);
+    worker_.act_for(signed_in_);
+    emit person_changed();
+    emit events_changed();
+    return {};
+}
+
+void Desk::sign_out(const Text& why) {
+    if (!person_) return;
+    worker_.act_for(std::nullopt);
+    if (file_)
+        if (auto out = file_->sign_out(why); !out) {
+            file_->forget_person();
+            emit trouble(shown_error(out.error()));
+        }
+    person_.reset();
+    signed_in_.reset();
+    emit person_changed();
+    emit events_changed();
+}
+
+Expected<void> Desk::may(Deed deed) const {
+    if (!file_) return {};
+    return file_->may(deed);
 }
 
 // ------------------------------------------------------------------------------------------------- edits
@@ -369,6 +419,7 @@ Expected<void> Desk::together(const QString& text, const std::function<Expected<
 
 template <class T>
 Expected<void> Desk::add(T thing, int at) {
+    SEAM_OK(may(Deed::teach));
     SEAM_OK(check_id(thing.id));
     if (index_of<T>(project_, thing.id) >= 0)
         return input_error(Text("the name \"{}\" is used already", thing.id), {}, "choose another");
@@ -381,6 +432,7 @@ Expected<void> Desk::add(T thing, int at) {
 
 template <class T>
 Expected<void> Desk::remove(const std::string& id) {
+    SEAM_OK(may(Deed::teach));
     const int at = index_of<T>(project_, id);
     if (at < 0) return input_error(Text("there is no \"{}\"", id));
     SEAM_OK(removable<T>(project_, id));
@@ -390,6 +442,7 @@ Expected<void> Desk::remove(const std::string& id) {
 
 template <class T>
 Expected<void> Desk::rename(const std::string& from, const std::string& to) {
+    SEAM_OK(may(Deed::teach));
     const int at = index_of<T>(project_, from);
     if (at < 0) return input_error(Text("there is no \"{}\"", from));
     if (from == to) return {};
@@ -408,6 +461,7 @@ Expected<void> Desk::rename(const std::string& from, const std::string& to) {
 
 template <class T>
 Expected<void> Desk::move(const std::string& id, int to) {
+    SEAM_OK(may(Deed::teach));
     const int at = index_of<T>(project_, id);
     if (at < 0) return input_error(Text("there is no \"{}\"", id));
     const int last = static_cast<int>(list_of<T>(project_).size()) - 1;
@@ -420,6 +474,7 @@ Expected<void> Desk::move(const std::string& id, int to) {
 
 template <class T>
 Expected<void> Desk::edit(const T& after, const QString& what) {
+    SEAM_OK(may(Deed::teach));
     const int at = index_of<T>(project_, after.id);
     if (at < 0) return input_error(Text("there is no \"{}\"", after.id));
     const T& before = list_of<T>(project_)[static_cast<std::size_t>(at)];
@@ -511,6 +566,7 @@ Expected<void> Desk::take_calibrations(std::vector<Calibration> made, bool use) 
 }
 
 Expected<void> Desk::edit_part(const PartSetup& after, const QString& text) {
+    SEAM_OK(may(Deed::teach));
     if (to_json_document(project_.part) == to_json_document(after) &&
         project_.part.mesh_ply == after.mesh_ply)
         return {};
@@ -530,12 +586,14 @@ Expected<void> Desk::import_part(const std::filesystem::path& path, const std::s
 }
 
 Expected<void> Desk::rename_project(const std::string& name) {
+    SEAM_OK(may(Deed::teach));
     if (name == project_.name) return {};
     push(std::make_unique<CmdProjectRename>(editor(), project_.name, name));
     return {};
 }
 
 Expected<void> Desk::set_requirement(const std::string& field, double value) {
+    SEAM_OK(may(Deed::limits));
     Requirements after = project_.requirements;
     SEAM_OK(set_field(after, field, value));
     if (to_json_document(after) == to_json_document(project_.requirements)) return {};
@@ -544,6 +602,7 @@ Expected<void> Desk::set_requirement(const std::string& field, double value) {
 }
 
 Expected<void> Desk::edit_acceptance(const AcceptanceRequirements& after) {
+    SEAM_OK(may(Deed::limits));
     if (after == project_.requirements.acceptance) return {};
     SEAM_OK(validate_fields(after));
     Requirements all = project_.requirements;
@@ -553,6 +612,7 @@ Expected<void> Desk::edit_acceptance(const AcceptanceRequirements& after) {
 }
 
 Expected<void> Desk::edit_project(const std::function<void(Project&)>& change, const QString& text) {
+    SEAM_OK(may(Deed::teach));
     Project after = project_;
     change(after);
     push(std::make_unique<CmdProjectReplace>(editor(), project_, std::move(after), text));

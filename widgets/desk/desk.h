@@ -52,6 +52,15 @@ class Desk : public QObject {
     Expected<void> save_as(const std::filesystem::path& path);  // with runs and events
     void close();                                               // unsaved edits are dropped
 
+    // --- who works; a project without users asks nobody
+    bool asks_who() const;
+    std::vector<User> users() const;
+    const std::optional<Person>& person() const { return person_; }
+    Expected<void> sign_in(const std::string& name, const std::string& password);
+    void sign_out(const Text& why = "signed out");
+    // What is refused is said before work is lost; what counts is refused by the file.
+    Expected<void> may(Deed deed) const;
+
     // --- edits; an Error changes nothing, and so does an edit that is none
     // T: Spot, Region, SensorSetup, RobotSetup, Calibration (add only). `at` < 0: at the end.
     template <class T>
@@ -109,6 +118,7 @@ class Desk : public QObject {
 
   signals:
     void opened();           // another project, or none
+    void person_changed();   // signed in, signed out
     void project_changed();  // by edit, undo, redo, restore
     void modified_changed(bool modified);
     void checklist_changed();
@@ -141,6 +151,8 @@ class Desk : public QObject {
     RecoveryWriter recovery_writer_;
     std::optional<FileUse> use_;  // of file_
     std::optional<ProjectFile> file_;
+    std::optional<SignedIn> signed_in_;
+    std::optional<Person> person_;
     Project project_;
     std::optional<Recovery> recovery_;
     std::shared_ptr<const StationState> state_ = std::make_shared<const StationState>();

@@ -73,6 +73,11 @@ void StationWorker::cancel() {
     wake_.notify_all();
 }
 
+void StationWorker::act_for(std::optional<SignedIn> who) {
+    const std::lock_guard lock(mutex_);
+    who_ = std::move(who);
+}
+
 void StationWorker::answer_push(bool yes) {
     const std::lock_guard lock(mutex_);
     push_answer_ = yes;
@@ -375,6 +380,7 @@ void StationWorker::work(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         Request request;
         std::optional<JogRequest> by_hand;
+        std::optional<SignedIn> who;
         {
             std::unique_lock lock(mutex_);
             wake_.wait_until(lock, stop, next_state, [&] {
@@ -416,6 +422,7 @@ void StationWorker::work(const std::stop_token& stop) {
                 cancel_ = request.cancel;
                 busy_ = true;
             }
+            who = who_;
             if (!request.task) by_hand = std::exchange(jog_request_, std::nullopt);
             jog_request_.reset();
         }
@@ -430,6 +437,9 @@ void StationWorker::work(const std::stop_token& stop) {
         if (request.task) {
             emit busy_changed(true, request.what);
             stop_live();
+            station_->file().forget_person();
+            // Who may not act any more does what needs no person: the file says so where it needs one.
+            if (who) (void)station_->file().act_for(*who);
             request.task(*station_, request.cancel.get_token());
             {
                 const std::lock_guard lock(mutex_);

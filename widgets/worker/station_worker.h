@@ -73,6 +73,9 @@ class StationWorker : public QObject {
     void close();
     void use(const Project& project);  // newest wins; counts from the next request
 
+    // Who what is begun from here on is done for; nobody: what needs no person.
+    void act_for(std::optional<SignedIn> who);
+
     void connect_devices();
     void disconnect_devices();
     // `part_type`: of the part that stands there; empty where the project has no types.
@@ -156,6 +159,7 @@ class StationWorker : public QObject {
     void move_by_hand(Station& station, const JogRequest& request);
     std::optional<JogRequest> jog_request_;
     std::unique_ptr<Project> newest_project_;
+    std::optional<SignedIn> who_;
     std::optional<std::pair<std::filesystem::path, Project>> open_request_;
     bool close_request_ = false, busy_ = false, opened_ = false;
     std::stop_source cancel_;

@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 void make_full_file(const fs::path& path) {
     Project project = sample_project();
     project.part_types = {{"left", "door left", 1}, {"right", "", 0}};
+    project.fixture = Fixture{"fixture", {{"locator 1", {1, 2, 3}, {{0, 0, 1}}}}, "-C([0-9]+)$"};
     auto file = ProjectFile::create(path, project);
     ASSERT_TRUE(file) << file.error().sentence();
     for (unsigned i = 1; i <= 2; ++i) ASSERT_TRUE(file->append_run(sample_run(i, 3, 40), project));
@@ -36,6 +37,8 @@ void make_full_file(const fs::path& path) {
     point.sigma_mm = {0.1, 0.1};
     ASSERT_TRUE(file->append_drift_point(point));
     ASSERT_TRUE(file->append_event({0, "2024-05-01T12:00:02.000Z", 0, EventKind::note, "desk", "a word"}));
+    ASSERT_TRUE(file->add_user("ada", Role::administrator, "correct horse battery"));
+    ASSERT_TRUE(file->sign_in("ada", "correct horse battery"));
     for (const char* name : {"first", "second"})
         ASSERT_TRUE(file->append_scan({name, "2024-05-01T12:00:03.000Z", "A", "R1", "spots S1, S2", 12, 3400,
                                        std::vector<std::byte>(300, std::byte{0x5a})}));

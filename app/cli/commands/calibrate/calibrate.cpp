@@ -7,6 +7,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/commands/calibrate/calibrate_live.h"
+#include "app/cli/sign_in.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/lookup_table_file.h"
@@ -80,7 +81,7 @@ Expected<void> write_table(const std::string& path, CalibrationSolution& solutio
 // use by that.
 Expected<std::string> store(const CalibrateArguments& a, const CalibrationMethod& method, const Given& given,
                             const CalibrationSolution& solution) {
-    SEAM_TRY(auto file, ProjectFile::open(a.project));
+    SEAM_TRY(auto file, open_to_edit(a.project));
     SEAM_TRY(auto project, file.load());
     const auto sensor = std::find_if(project.sensors.begin(), project.sensors.end(),
                                      [&](const SensorSetup& s) { return s.id == a.sensor; });
@@ -288,6 +289,7 @@ void add_method(CommandLine& line, CLI::App& group, const CalibrationMethod& met
         ->type_name("FILE.html");
     command->add_option("--store", a->project, "Keep result and data in this project")
         ->type_name("FILE.seam");
+    add_sign_in(command);
     command->add_option("--sensor", a->sensor, "The project's sensor that was calibrated");
     command->add_flag("--detect-convention", a->detect_convention,
                       "Where the answer is poor: solve with the poses read in every convention, and say "

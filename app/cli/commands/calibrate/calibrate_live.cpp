@@ -1,4 +1,5 @@
 #include "app/cli/commands/calibrate/calibrate_live.h"
+#include "app/cli/sign_in.h"
 
 #include <fmt/format.h>
 
@@ -88,7 +89,7 @@ Expected<Answer> calibrate_on_devices(const CalibrationMethod& method, const std
                                       const std::string& sensor, const LiveCalibrationArguments& a) {
     if (sensor.empty()) return usage_error("say which of the project's sensors", "--sensor");
     SEAM_TRY(auto settings, settings_of(method, a.settings));
-    SEAM_TRY(auto station, Station::open(file));
+    SEAM_TRY(auto station, open_station(file, Deed::teach));
     SEAM_OK(station.connect());
     LiveCalibrationOptions options;
     options.sensor_id = sensor;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/cli/command.h"
+#include "app/cli/sign_in.h"
 #include "projects/file/project_file.h"
 #include "projects/measure/measure.h"
 #include "projects/measure/nozzle.h"
@@ -29,7 +30,7 @@ std::vector<std::string> stale_calibrations(const Project& project, const std::s
 }
 
 Expected<Answer> collision_command(const CollisionArguments& a) {
-    SEAM_TRY(auto file, ProjectFile::open(a.file));
+    SEAM_TRY(auto file, open_to_edit(a.file));
     SEAM_TRY(auto project, file.load());
     std::string robot = a.robot;
     if (robot.empty()) {
@@ -66,6 +67,7 @@ void add_collision(CommandLine& line) {
                                  "seamwright collision door_left.seam --robot R1\n"
                                  "  seamwright collision door_left.seam --robot R1 --undo");
     command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
+    add_sign_in(command);
     command->add_option("--robot", a->robot, "Which robot (the project's only one)")->type_name("ID");
     auto* utc = command->add_option("--utc", a->utc, "When, ISO 8601; else now")->type_name("DATE");
     command->add_flag("--undo", a->undo, "Take the last mark back")->excludes(utc);

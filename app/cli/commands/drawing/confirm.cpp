@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "app/cli/command.h"
+#include "app/cli/sign_in.h"
 #include "app/cli/signal_watch.h"
 #include "projects/confirm/confirm.h"
 
@@ -47,7 +48,7 @@ Expected<Answer> confirm_command(const ConfirmArguments& a) {
     const bool named = !a.options.spot_ids.empty() || !a.options.region_id.empty();
     if (a.all && named)
         return usage_error("all spots and some of them", "--all", "name spots, a region, or all");
-    SEAM_TRY(auto station, Station::open(a.file));
+    SEAM_TRY(auto station, open_station(a.file, Deed::teach));
     SEAM_OK(spots_to_confirm(station.project(), a.options));
     SEAM_OK(station.connect());
     ConfirmOptions options = a.options;
@@ -97,6 +98,7 @@ void add_confirm(CommandLine& line) {
                                  "  seamwright confirm door_left.seam --all --dry-run");
     ConfirmOptions& o = a->options;
     command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
+    add_sign_in(command);
     command->add_option("--spot", o.spot_ids, "This spot (repeatable)")->type_name("ID");
     command->add_option("--region", o.region_id, "The spots of this region that are not confirmed")
         ->type_name("ID");

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "app/cli/command.h"
+#include "app/cli/sign_in.h"
 #include "app/cli/signal_watch.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/pose_json.h"
@@ -147,7 +148,7 @@ Expected<void> save(ProjectFile& file, const TakenSpots& taken, const Text& said
 }
 
 Expected<Answer> undo(const ProposeArguments& a) {
-    SEAM_TRY(auto file, ProjectFile::open(a.file));
+    SEAM_TRY(auto file, open_to_edit(a.file));
     SEAM_TRY(const auto project, file.load());
     SEAM_TRY(const auto out, without_unconfirmed(project, a.options.region_id));
     SEAM_OK(save(file, out, Text("{} spots from the drawing taken out again", out.spot_ids.size())));
@@ -180,7 +181,7 @@ Expected<Answer> propose_command(const ProposeArguments& given) {
         last = percent;
         fmt::print(stderr, "{} %  {}\n", percent, what.english());
     };
-    SEAM_TRY(auto file, ProjectFile::open(a.file, a.take ? FileAccess::read_write : FileAccess::read_only));
+    SEAM_TRY(auto file, a.take ? open_to_edit(a.file) : ProjectFile::open(a.file, FileAccess::read_only));
     SEAM_TRY(auto project, file.load());
     if (!a.options.region_id.empty() && !a.three_sigma_given)
         a.options.three_sigma_mm = wanted_by(project, a.options.region_id);
@@ -230,6 +231,7 @@ void add_propose(CommandLine& line) {
                                  "--region top --take");
     ProposeOptions& o = a->options;
     command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
+    add_sign_in(command);
     command
         ->add_option("--edge", o.edge,
                      "The edge that the bead follows; spots stand along its chain of tangent edges")

@@ -4,6 +4,7 @@
 
 #include "app/cli/arguments/pose_argument.h"
 #include "app/cli/command.h"
+#include "app/cli/sign_in.h"
 #include "app/cli/signal_watch.h"
 #include "devices/drawing/drawing.h"
 #include "devices/exchange/cloud/cloud_file.h"
@@ -79,7 +80,7 @@ Expected<TriangleMesh> drawing(FitArguments& a) {
 }
 
 Expected<void> take_pose(const FitArguments& a, const FitReport& report, Answer& answer) {
-    SEAM_TRY(auto file, ProjectFile::open(a.file));
+    SEAM_TRY(auto file, open_to_edit(a.file));
     SEAM_TRY(auto project, file.load());
     const Pose before = project.part.base_from_workobject;
     project.part.base_from_workobject = report.fit.base_from_part;
@@ -186,6 +187,7 @@ void add_fit(CommandLine& line) {
                                  "seamwright fit --cloud scan.ply --mesh part.stl --report fit.html\n"
                                  "  seamwright fit door_left.seam --scan door.ply --to drawing --take");
     command->add_option("file", a->file, "The project")->type_name("FILE.seam");
+    add_sign_in(command);
     command
         ->add_option("--scan", a->scan,
                      "One that the project keeps, or a cloud in the robot's base: PLY, PCD, CSV")

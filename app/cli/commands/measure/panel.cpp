@@ -13,6 +13,7 @@
 #include "app/cli/answers/run_text.h"
 #include "app/cli/arguments/feature_setting.h"
 #include "app/cli/command.h"
+#include "app/cli/sign_in.h"
 #include "app/cli/signal_watch.h"
 #include "core/panel/panel_fit.h"
 #include "devices/exchange/files.h"
@@ -248,7 +249,7 @@ Expected<void> make_simulated(const PanelArguments& a) {
 
 Expected<Answer> panel_on_devices(const PanelArguments& a) {
     if (a.simulated) SEAM_OK(make_simulated(a));
-    SEAM_TRY(auto station, Station::open(a.file));
+    SEAM_TRY(auto station, open_station(a.file, a.push ? std::optional(Deed::push) : std::nullopt));
     SEAM_TRY(auto id, job_of(station.project(), a));
     if (!a.settings.empty()) return set(station, id, a);
     if (const PanelJob* job = find_panel_job(station.project(), id); job && a.teach == 0)
@@ -351,6 +352,7 @@ void add_panel(CommandLine& line) {
     command->add_option("--seed", a->seed, "With --simulated: every random number follows from it")
         ->needs(simulated);
     settings->excludes(simulated);
+    add_sign_in(command);
     line.on(command, [a]() -> Expected<Answer> {
         if (is_project(*a)) {
             if (!a->deviation.empty())

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "app/cli/command.h"
+#include "app/cli/sign_in.h"
 #include "app/cli/signal_watch.h"
 #include "devices/exchange/cloud/cloud_file.h"
 #include "devices/exchange/tables/point_table.h"
@@ -50,7 +51,7 @@ Expected<ScanResult> scanned_by_devices(ScanArguments& a) {
         SEAM_TRY(const auto table, read_pose_table(a.path, a.layout));
         for (const NamedPose& p : table.poses) a.driven.stands.push_back(p.pose);
     }
-    SEAM_TRY(auto station, Station::open(a.file));
+    SEAM_TRY(auto station, open_station(a.file));
     if (a.recorded.robot_id.empty() && station.project().robots.size() == 1)
         a.recorded.robot_id = station.project().robots.front().id;
     SEAM_OK(station.connect());
@@ -112,7 +113,7 @@ Expected<Answer> write_kept(const ScanArguments& a) {
 }
 
 Expected<Answer> remove_kept(const ScanArguments& a) {
-    SEAM_TRY(auto file, ProjectFile::open(a.file));
+    SEAM_TRY(auto file, open_to_edit(a.file));
     SEAM_OK(file.delete_scan(a.remove));
     return Answer{{{"status", "ok"}, {"removed", a.remove}}, fmt::format("{} removed\n", a.remove)};
 }
@@ -140,7 +141,7 @@ Expected<void> keep_scan(const ScanArguments& a, const ScanResult& scan) {
     const std::string ply = cloud_ply(scan.cloud, kInBaseMark);
     const auto bytes = std::as_bytes(std::span(ply));
     kept.cloud_ply.assign(bytes.begin(), bytes.end());
-    SEAM_TRY(auto file, ProjectFile::open(a.file));
+    SEAM_TRY(auto file, open_to_edit(a.file));
     return file.append_scan(kept);
 }
 
@@ -199,6 +200,7 @@ Expected<Answer> scan_command(ScanArguments& a) {
 
 void add_scan_options(CLI::App* command, const std::shared_ptr<ScanArguments>& a) {
     command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
+    add_sign_in(command);
     auto* spots =
         command->add_option("--spots", a->driven.spot_ids, "Spots that the robot goes along, in order");
     spots->delimiter(',')->type_name("S1,S2,...");

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "app/cli/command.h"
+#include "app/cli/sign_in.h"
 #include "devices/capture/capture.h"
 #include "projects/drift/drift_edits.h"
 #include "projects/drift/drift_keeper.h"
@@ -116,6 +117,11 @@ Answer shown(const Project& project, const DriftStanding& s) {
     return answer;
 }
 
+// Who has looked: whoever is signed in, where nobody is named.
+std::string said_by(const ProjectFile& file, const DriftArguments& a) {
+    return a.by.empty() && file.person() ? file.person()->name : a.by;
+}
+
 Expected<void> edit(Project& project, ProjectFile& file, const DriftArguments& a) {
     SEAM_TRY(const auto points, file.drift_points());
     const std::string now = utc_now();
@@ -139,7 +145,7 @@ Expected<void> edit(Project& project, ProjectFile& file, const DriftArguments& a
         project.drift.reset();
         return {};
     }
-    SEAM_OK(acknowledge_step(project, points, a.by, a.text, now));
+    SEAM_OK(acknowledge_step(project, points, said_by(file, a), a.text, now));
     return {};
 }
 
@@ -150,12 +156,12 @@ Expected<Answer> drift_command(const DriftArguments& a) {
         SEAM_TRY(const auto standing, stored_standing(file, project, utc_now()));
         return shown(project, standing);
     }
-    SEAM_TRY(auto file, ProjectFile::open(a.file));
+    SEAM_TRY(auto file, open_to_edit(a.file));
     SEAM_TRY(Project project, file.load());
     SEAM_OK(edit(project, file, a));
     SEAM_OK(file.save(project));
     const Text said =
-        a.action == "acknowledge" ? Text("a step was acknowledged by {}: {}", a.by, a.text)
+        a.action == "acknowledge" ? Text("a step was acknowledged by {}: {}", said_by(file, a), a.text)
         : a.action == "compensate"
             ? (a.on_off == "on" ? Text("compensation is switched on, at most {:.3f} mm", a.most_mm)
                                 : Text("compensation is switched off"))
@@ -184,6 +190,7 @@ void add_drift(CommandLine& line) {
                  "go on. Exit 1 of status:\nrecalibrate, or stopped by a step.",
                  "seamwright drift door.seam acknowledge --by Ada --text \"bracket tightened\"");
     command->add_option("file", a->file, "Project")->required()->type_name("FILE.seam");
+    add_sign_in(command);
     command->add_option("action", a->action, "status, set, learn, compensate, acknowledge or remove")
         ->required()
         ->check(CLI::IsMember({"status", "set", "learn", "compensate", "acknowledge", "remove"}));

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/cli/command.h"
+#include "app/cli/sign_in.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/line/register_map.h"
 #include "projects/file/project_file.h"
@@ -97,7 +98,7 @@ Expected<void> change(Project& project, const SetArguments& a, bool types_given)
 }
 
 Expected<Answer> set(const SetArguments& a, bool types_given) {
-    SEAM_TRY(auto file, ProjectFile::open(a.file));
+    SEAM_TRY(auto file, open_to_edit(a.file));
     SEAM_TRY(auto project, file.load());
     SEAM_OK(change(project, a, types_given));
     SEAM_OK(file.save(project));
@@ -111,6 +112,7 @@ void add_set(CommandLine& line, CLI::App& group) {
                  "seamwright line set door.seam plc --protocol modbus-server --settings "
                  "'{\"port\": 1502, \"start\": \"line\"}'");
     command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
+    add_sign_in(command);
     command->add_option("id", a->id, "Its name")->required();
     std::string known;
     for (const LineProtocol& p : line_protocols())

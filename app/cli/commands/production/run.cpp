@@ -16,6 +16,7 @@
 #include "app/cli/command.h"
 #include "app/cli/commands/production/watch_outputs.h"
 #include "app/cli/recording.h"
+#include "app/cli/sign_in.h"
 #include "app/cli/signal_watch.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
@@ -146,7 +147,8 @@ std::vector<Error> findings_of_watching(const Project& project, const RunArgumen
 
 Expected<Answer> watch_project(const RunArguments& a) {
     SEAM_TRY(auto log, open_log(a.log));
-    SEAM_TRY(auto station, Station::open(a.file));
+    SEAM_TRY(auto station, open_station(a.file, a.push ? std::optional(Deed::push) : std::nullopt));
+    if (a.keep_runs > 0) SEAM_OK(station.file().may(Deed::remove));
     if (!a.type.empty()) SEAM_OK(called_type(station.project(), a.type));
     if (auto refused = refuse_unsafe(station, findings_of_watching(station.project(), a))) return *refused;
     WatchOptions options;
@@ -197,7 +199,7 @@ Expected<Answer> watch_project(const RunArguments& a) {
 }
 
 Expected<Answer> run(const RunArguments& a) {
-    SEAM_TRY(auto station, Station::open(a.file));
+    SEAM_TRY(auto station, open_station(a.file, a.push ? std::optional(Deed::push) : std::nullopt));
     SEAM_TRY(const auto type, called_type(station.project(), a.type));
     if (auto refused = refuse_unsafe(station, motion_findings(of_type(station.project(), type), a.push)))
         return *refused;
@@ -284,6 +286,7 @@ void add_run(CommandLine& line) {
         line.add("run", "Measure a part on the project's devices, correct, and push when told to.",
                  "seamwright run door_left.seam --part CAR-0815 --push");
     command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
+    add_sign_in(command);
     auto* part = command->add_option("--part", a->part, "Name of the part in front of the robot");
     command
         ->add_option(

@@ -10,7 +10,8 @@ namespace seamwright::cli {
 namespace {
 
 struct ServiceArguments {
-    std::string file, out, user, status, status_token, report_every, report_from, report_to;
+    std::string file, out, user, identity, password_file, status, status_token, report_every, report_from,
+        report_to;
     bool push = false;
     std::int64_t keep = 0;
 };
@@ -39,6 +40,8 @@ Expected<std::string> unit_text(const ServiceArguments& a, const std::filesystem
     const auto add = [&](const char* option, const std::string& value) {
         if (!value.empty()) words.insert(words.end(), {option, value});
     };
+    add("--user", a.identity);
+    add("--password-file", a.password_file.empty() ? "" : absolute(a.password_file));
     add("--keep", a.keep > 0 ? std::to_string(a.keep) : "");
     add("--status", a.status);
     add("--status-token", a.status_token.empty() ? "" : absolute(a.status_token));
@@ -84,7 +87,11 @@ Expected<std::string> unit_text(const ServiceArguments& a, const std::filesystem
 }
 
 Expected<Answer> service_command(const ServiceArguments& a) {
-    SEAM_OK(ProjectFile::open(a.file, FileAccess::read_only));
+    SEAM_TRY(const auto file, ProjectFile::open(a.file, FileAccess::read_only));
+    SEAM_TRY(const auto users, file.users());
+    if (a.push && !users.empty() && a.identity.empty())
+        return usage_error("the project has users, and the service pushes as none of them", a.file,
+                           "give --identity NAME --password-file FILE of a user of the role service");
     std::error_code error;
     const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
     if (error)
@@ -117,6 +124,16 @@ void add_service(CommandLine& line) {
     command->add_option("--out", a->out, "The unit's file; else it is printed")->type_name("FILE.service");
     command->add_flag("--push", a->push, "As of run: write the corrected frames");
     command->add_option("--user", a->user, "Whose rights it runs with; none: root's");
+    auto* identity = command
+                         ->add_option("--identity", a->identity,
+                                      "As which user of the project it pushes: one of the role service")
+                         ->type_name("NAME");
+    auto* password = command
+                         ->add_option("--password-file", a->password_file,
+                                      "His password, readable by the unit's user alone")
+                         ->needs(identity)
+                         ->type_name("FILE");
+    identity->needs(password);
     command->add_option("--keep", a->keep, "As of run: keep only so many runs")->check(CLI::PositiveNumber);
     auto* status = command->add_option("--status", a->status, "As of run: address of the status page");
     command->add_option("--status-token", a->status_token, "As of run")->needs(status)->type_name("FILE");

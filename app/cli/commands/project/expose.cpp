@@ -7,6 +7,7 @@
 
 #include "app/cli/answers/result_json.h"
 #include "app/cli/command.h"
+#include "app/cli/sign_in.h"
 #include "app/cli/signal_watch.h"
 #include "projects/station/spot_light.h"
 #include "projects/station/station.h"
@@ -170,7 +171,7 @@ std::string found_text(const Spot& spot, const FoundLight& found) {
 }
 
 Expected<Answer> find(const ExposeArguments& a) {
-    SEAM_TRY(auto station, Station::open(a.file));
+    SEAM_TRY(auto station, open_station(a.file, a.edits() ? std::optional(Deed::teach) : std::nullopt));
     Project project = station.project();
     SEAM_TRY(const auto chosen, chosen_spots(project, a));
     FindLightOptions search = a.search;
@@ -218,8 +219,7 @@ Expected<Answer> expose(const ExposeArguments& a) {
     if (a.find) return find(a);
     Answer answer;
     answer.json = {{"status", "ok"}, {"spots", json::array()}};
-    SEAM_TRY(auto file,
-             ProjectFile::open(a.file, a.edits() ? FileAccess::read_write : FileAccess::read_only));
+    SEAM_TRY(auto file, a.edits() ? open_to_edit(a.file) : ProjectFile::open(a.file, FileAccess::read_only));
     SEAM_TRY(auto project, file.load());
     if (a.edits()) {
         SEAM_TRY(const auto chosen, chosen_spots(project, a));
@@ -256,6 +256,7 @@ void add_expose(CommandLine& line) {
                  "  seamwright expose door_left.seam --all --follow 100..3000\n"
                  "  seamwright expose door_left.seam --spots T3 --merge 250,2000");
     command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
+    add_sign_in(command);
     auto* spots = command->add_option("--spots", a->spots, "Which spots");
     spots->delimiter(',')->type_name("S1,S2,...");
     command->add_flag("--all", a->all, "All spots")->excludes(spots);

@@ -4,6 +4,7 @@
 
 #include "app/cli/arguments/pose_argument.h"
 #include "app/cli/command.h"
+#include "app/cli/sign_in.h"
 #include "devices/exchange/files.h"
 #include "projects/hand_over/hand_over.h"
 #include "projects/reuse/reteach.h"
@@ -61,8 +62,7 @@ Expected<Answer> reteach_command(const ReteachArguments& a) {
         SEAM_TRY(auto pose, read_pose_argument(a.base_from_workobject, "--base-from-workobject"));
         exchange.base_from_workobject = pose;
     }
-    SEAM_TRY(auto file,
-             ProjectFile::open(a.file, a.dry_run ? FileAccess::read_only : FileAccess::read_write));
+    SEAM_TRY(auto file, a.dry_run ? ProjectFile::open(a.file, FileAccess::read_only) : open_to_edit(a.file));
     SEAM_TRY(auto project, file.load());
     SEAM_TRY(auto retaught, after_exchange(project, exchange));
     Answer answer;
@@ -108,6 +108,7 @@ void add_hand_over(CommandLine& line) {
                  "seamwright calibrate tcp-sphere sphere.json --store door_left.seam --sensor A\n"
                  "  seamwright reteach door_left.seam --sensor A --calibration tcp-sphere-2");
     reteach->add_option("file", r->file, "The project")->required()->type_name("FILE.seam");
+    add_sign_in(reteach);
     reteach->add_option("--sensor", r->sensor, "Whose spots")->required();
     reteach->add_option("--calibration", r->calibration, "Of the new sensor, or on the new robot")
         ->required();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/cli/command.h"
+#include "app/cli/sign_in.h"
 #include "projects/file/project_file.h"
 #include "projects/model/part_types.h"
 #include "projects/reuse/part_type_edits.h"
@@ -45,7 +46,7 @@ Answer listed(const Project& project) {
 
 template <class Edit>
 Expected<Answer> edited(const std::string& path, const Edit& edit) {
-    SEAM_TRY(auto file, ProjectFile::open(path));
+    SEAM_TRY(auto file, open_to_edit(path));
     SEAM_TRY(auto project, file.load());
     SEAM_TRY(auto after, edit(project));
     SEAM_OK(file.save(after));
@@ -77,6 +78,7 @@ CLI::App* subcommand(CommandLine& line, CLI::App& group, const std::shared_ptr<T
                      const char* name, const char* help, const char* example) {
     CLI::App* command = line.add(group, name, help, example);
     command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
+    add_sign_in(command);
     return command;
 }
 

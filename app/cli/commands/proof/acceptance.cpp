@@ -4,6 +4,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/commands/proof/acceptance_live.h"
+#include "app/cli/sign_in.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/quality/study_csv.h"
@@ -284,6 +285,7 @@ void add_acceptance(CommandLine& line) {
         "values.csv has the columns part,rehang,run,value[,reference] in any order; millimetres.");
     AcceptanceSettings& s = a->settings;
     command->add_option("file", a->file, "The project whose stored runs are studied")->type_name("FILE.seam");
+    add_sign_in(command);
     command->add_option("--data", a->data, "Values from elsewhere instead")->type_name("FILE.csv");
     command
         ->add_option(

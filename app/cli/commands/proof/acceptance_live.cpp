@@ -1,4 +1,5 @@
 #include "app/cli/commands/proof/acceptance_live.h"
+#include "app/cli/sign_in.h"
 
 #include <fmt/format.h>
 
@@ -68,7 +69,7 @@ Expected<StudyProgress> measure_live(const LiveArguments& a, Study study,
         options.place = [&](const std::string& part, int rehang) {
             return ask_for_part(part, rehang, a.rehangs);
         };
-    SEAM_TRY(auto station, Station::open(a.file));
+    SEAM_TRY(auto station, open_station(a.file, Deed::teach));
     // Options that are none are refused before a device is opened, and a study that is complete needs none.
     SEAM_TRY(auto before, study_progress(station.file(), station.project(), options));
     Project project = station.project();
@@ -113,14 +114,14 @@ Answer incomplete_answer(const StudyProgress& progress) {
 
 Expected<void> keep_requirements(const std::string& path, const AcceptanceRequirements& requirements) {
     SEAM_OK(validate_fields(requirements));
-    SEAM_TRY(auto file, ProjectFile::open(path));
+    SEAM_TRY(auto file, open_to_edit(path));
     SEAM_TRY(auto project, file.load());
     project.requirements.acceptance = requirements;
     return file.save(project);
 }
 
 Expected<void> keep_offset_of(const std::string& path, const Acceptance& acceptance, Answer& answer) {
-    SEAM_TRY(auto file, ProjectFile::open(path));
+    SEAM_TRY(auto file, open_to_edit(path));
     SEAM_TRY(auto project, file.load());
     SEAM_TRY(auto region,
              region_in(project, path,
@@ -135,7 +136,7 @@ Expected<void> keep_offset_of(const std::string& path, const Acceptance& accepta
 
 Expected<Answer> switch_offset_command(const std::string& path, const std::string& region_id,
                                        const OffsetSwitch& to) {
-    SEAM_TRY(auto file, ProjectFile::open(path));
+    SEAM_TRY(auto file, open_to_edit(path));
     SEAM_TRY(auto project, file.load());
     SEAM_TRY(auto region, region_in(project, path, region_id));
     SEAM_OK(to.undo ? undo_offset(*region) : switch_offset(*region, to.version));

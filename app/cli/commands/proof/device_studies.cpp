@@ -6,6 +6,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/program_files.h"
+#include "app/cli/sign_in.h"
 #include "app/cli/signal_watch.h"
 #include "devices/registry.h"
 #include "projects/acceptance/equipment/device_studies.h"
@@ -23,7 +24,7 @@ struct DeviceStudyArguments {
 };
 
 Expected<Station> connected_station(const std::string& file) {
-    auto station = Station::open(file);
+    auto station = open_station(file, Deed::teach);
     if (!station) return station;
     SEAM_OK(station->connect());
     return station;
@@ -54,7 +55,7 @@ Answer undone(const char* what) {
 
 Expected<Answer> measure_robot_command(const DeviceStudyArguments& a) {
     if (a.undo) {
-        SEAM_TRY(auto station, Station::open(a.file));
+        SEAM_TRY(auto station, open_station(a.file, Deed::teach));
         SEAM_OK(undo_robot_study(station, a.robot));
         return undone("arrival covariance");
     }
@@ -88,7 +89,7 @@ Expected<Answer> measure_trigger_command(const DeviceStudyArguments& a) {
         return usage_error("--program and --brand belong together", "measure-trigger", "give both");
     if (!a.program.empty()) return write_passes(a);
     if (a.undo) {
-        SEAM_TRY(auto station, Station::open(a.file));
+        SEAM_TRY(auto station, open_station(a.file, Deed::teach));
         SEAM_OK(undo_trigger_study(station));
         return undone("latency and jitter");
     }
@@ -123,6 +124,7 @@ void add_device_studies(CommandLine& line) {
                                "nothing is written to it.",
                                "seamwright measure-robot door_left.seam --spot S1 --spot S4 --returns 30");
     robot->add_option("file", r->file, "The project")->required()->type_name("FILE.seam");
+    add_sign_in(robot);
     robot->add_option("--spot", r->on_robot.spot_ids,
                       "Return to this spot (repeatable); else to up to three that together see the most");
     robot->add_option("--returns", r->on_robot.returns, "To each spot")
@@ -150,6 +152,7 @@ void add_device_studies(CommandLine& line) {
                  "the pass that would. Nothing is written to the robot.",
                  "seamwright measure-trigger door_left.seam --spot S1 --speeds 25,50,100 --travel-deg 45");
     trigger->add_option("file", t->file, "The project")->required()->type_name("FILE.seam");
+    add_sign_in(trigger);
     trigger
         ->add_option("--spot", t->on_trigger.spot_id, "Passed over; else the one that sees its travel best")
         ->type_name("ID");

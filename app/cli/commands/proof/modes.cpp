@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/cli/command.h"
+#include "app/cli/sign_in.h"
 #include "devices/capture/capture.h"
 #include "projects/elastic/region_modes.h"
 
@@ -121,7 +122,7 @@ Expected<Answer> modes_command(const ModesArguments& a) {
         SEAM_TRY(const Project project, file.load());
         return show(project, a.region);
     }
-    SEAM_TRY(auto file, ProjectFile::open(a.file));
+    SEAM_TRY(auto file, open_to_edit(a.file));
     SEAM_TRY(Project project, file.load());
     std::string region = a.region;
     if (a.action == "learn") {
@@ -162,6 +163,7 @@ void add_modes(CommandLine& line) {
         "the run says so. Exit 1: no mode,\nor it brings nothing.",
         "seamwright modes door.seam learn --region top");
     command->add_option("file", a->file, "Project")->required()->type_name("FILE.seam");
+    add_sign_in(command);
     command->add_option("action", a->action, "learn, show, compare, on or off")
         ->required()
         ->check(CLI::IsMember({"learn", "show", "compare", "on", "off"}));

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "app/cli/command.h"
+#include "app/cli/sign_in.h"
 #include "app/cli/signal_watch.h"
 #include "core/geometry/notation.h"
 #include "devices/exchange/files.h"
@@ -25,7 +26,7 @@ constexpr std::array<const char*, 6> kNames{"x_mm", "y_mm", "z_mm", "a_deg", "b_
 constexpr std::array<const char*, 3> kKinds{"translation", "rotation", "both"};
 
 Expected<Station> open_connected(const std::string& file) {
-    auto station = Station::open(file);
+    auto station = open_station(file, Deed::teach);
     if (!station) return station;
     SEAM_OK(station->connect());
     return station;
@@ -109,7 +110,7 @@ std::string csv_of(const KnownShift& proof) {
 }
 
 Expected<Answer> known_shift(const KnownShiftArguments& a) {
-    SEAM_TRY(auto station, Station::open(a.file));
+    SEAM_TRY(auto station, open_station(a.file, Deed::teach));
     const Project project = station.project();
     KnownShiftOptions options;
     options.grid = a.grid;
@@ -212,6 +213,7 @@ void add_proof(CommandLine& line) {
                               "Kept in the project as evidence.",
                               "seamwright zero-shift door_left.seam --runs 10");
     zero->add_option("file", *file, "The project")->required()->type_name("FILE.seam");
+    add_sign_in(zero);
     zero->add_option("--runs", *runs, "How often")->check(CLI::Range(2, 1000))->capture_default_str();
     auto type = std::make_shared<std::string>();
     zero->add_option("--type", *type, "Of which part type, when the project has types")->type_name("ID");
@@ -225,6 +227,7 @@ void add_proof(CommandLine& line) {
         "evidence.",
         "seamwright known-shift door_left.seam --range-mm 10 --step-mm 5 --range-deg 1 --step-deg 0.5");
     known->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
+    add_sign_in(known);
     known
         ->add_option("--by", a->by,
                      "part: the simulated part moves; base: the measuring moves are shifted the other way; "

@@ -535,7 +535,7 @@ TEST_F(Import, TheLaserIsReadInItsColour) {
 }
 
 TEST_F(Import, EveryCalibrationSolvesItsOwnExample) {
-    for (const std::string method : {"lens", "camera", "laser-plane", "lut", "tcp-sphere", "plate", "static",
+    for (const std::string method : {"lens", "camera", "laser-plane", "lut", "tcp-sphere", "plate", "stereo", "bundle", "static",
                                      "hand-eye", "stripe-camera", "drift"}) {
         const std::string file = (folder / (method + ".json")).string();
         EXPECT_EQ(run({"calibrate", method, "--example", file}).exit_code, 0) << method;

@@ -14,7 +14,18 @@ namespace {
 
 constexpr double kGoodChain_mm = 0.1, kUsableChain_mm = 0.3;  // three sigma of the working point
 
-Expected<void> check_link(const UncertainPose& link, const Text& where) {
+double largest_sigma(const Pose& pose, const Matrix6& covariance, const Eigen::Vector3d& point) {
+    Eigen::Matrix<double, 3, 6> j;
+    j.leftCols<3>().setIdentity();
+    j.rightCols<3>() = -skew(pose.linear() * point);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
+        Eigen::Matrix3d(j * covariance * j.transpose()));
+    return std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
+}
+
+}  // namespace
+
+Expected<void> check_uncertain_pose(const UncertainPose& link, const Text& where) {
     SEAM_OK(pose_from_matrix(link.pose.matrix(), where));
     if (!link.covariance.allFinite())
         return input_error("the covariance holds a value that is not a finite number", where);
@@ -35,17 +46,6 @@ Expected<void> check_link(const UncertainPose& link, const Text& where) {
     return {};
 }
 
-double largest_sigma(const Pose& pose, const Matrix6& covariance, const Eigen::Vector3d& point) {
-    Eigen::Matrix<double, 3, 6> j;
-    j.leftCols<3>().setIdentity();
-    j.rightCols<3>() = -skew(pose.linear() * point);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
-        Eigen::Matrix3d(j * covariance * j.transpose()));
-    return std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
-}
-
-}  // namespace
-
 UncertainPose operator*(const UncertainPose& a, const UncertainPose& b) {
     return {a.pose * b.pose, covariance_of_product(a.pose, a.covariance, b.pose, b.covariance)};
 }
@@ -63,16 +63,16 @@ Expected<StaticChainResult> calibrate_static(const std::vector<StaticSensor>& se
     std::vector<Pose> cameras, worlds;
     for (const auto& sensor : sensors) {
         const Text where("sensor '{}', ", sensor.id);
-        SEAM_OK(check_link(sensor.world_from_plate, joined(where, "", "world_from_plate")));
-        SEAM_OK(check_link(sensor.plate_from_camera, joined(where, "", "plate_from_camera")));
-        SEAM_OK(check_link(sensor.camera_from_laser, joined(where, "", "camera_from_laser")));
+        SEAM_OK(check_uncertain_pose(sensor.world_from_plate, joined(where, "", "world_from_plate")));
+        SEAM_OK(check_uncertain_pose(sensor.plate_from_camera, joined(where, "", "plate_from_camera")));
+        SEAM_OK(check_uncertain_pose(sensor.camera_from_laser, joined(where, "", "camera_from_laser")));
         if (!sensor.working_point_mm.allFinite())
             return input_error("the working point is not finite", joined(where, "", "working_point_mm"));
         cameras.push_back(sensor.plate_from_camera.pose);
     }
     SEAM_OK(check_millimetres(cameras, "plate_from_camera of the sensors"));
     if (options.reference_from_world)
-        SEAM_OK(check_link(*options.reference_from_world, "reference_from_world"));
+        SEAM_OK(check_uncertain_pose(*options.reference_from_world, "reference_from_world"));
 
     StaticChainResult result;
     result.judgement = {Verdict::good, "", ""};

@@ -26,6 +26,8 @@ struct UncertainPose {
 };
 UncertainPose operator*(const UncertainPose& a_from_b, const UncertainPose& b_from_c);
 UncertainPose inverse(const UncertainPose& a_from_b);
+// Refuses a pose that is not rigid or not in mm, and a covariance that is none: not finite, not symmetric, not positive.
+Expected<void> check_uncertain_pose(const UncertainPose& link, const Text& where);
 
 struct StaticSensor {
     std::string id;

@@ -159,10 +159,19 @@ CalibrationMethod camera_method() {
     m.example = camera_example;
     m.solve = solve_camera;
     m.data_of_images = camera_images;
-    m.guided = false;
     m.entries = "views";
+    m.capture = CaptureKind::board_view;
     m.use = AnswerUse::record;
+    m.fewest = 3;
+    m.advised = 12;
+    m.settings = board_settings();
     m.title = "Camera";
+    m.why = "Finds focal length, centre and distortion of a camera from views of a plate.";
+    m.need = {"A flat board, and light enough to see it by.",
+              "10 or more views: tilted to both sides about both axes, and into every corner of the picture.",
+              "Or a folder of pictures, or points of any body and their pixels, from a file."};
+    m.file = "JSON with views of known points, or a folder of images";
+    m.drawing = SetUpDrawing::board;
     return m;
 }
 

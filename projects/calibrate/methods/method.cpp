@@ -12,7 +12,11 @@ using nlohmann::json;
 
 bool shows_board(CaptureKind kind) {
     return kind == CaptureKind::board_and_stripe || kind == CaptureKind::board_pose ||
-           kind == CaptureKind::board_points || kind == CaptureKind::board_chain;
+           kind == CaptureKind::board_points || kind == CaptureKind::board_view || of_all_sensors(kind);
+}
+
+bool of_all_sensors(CaptureKind kind) {
+    return kind == CaptureKind::board_chain || kind == CaptureKind::board_sights;
 }
 
 Expected<json> prepared_settings(const CalibrationMethod& method, json settings, const Calibration* base,

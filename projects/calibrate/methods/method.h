@@ -23,8 +23,9 @@ using ExcludedIds = std::vector<std::string>;
 // What is taken when the robot stands still. `files`: this method's data are measured elsewhere and loaded.
 // `apex`: of a triangular body, see apex_pair.h. `board_points`: corners of a board in the robot's base,
 // through the calibration in use. `board_chain`: one sensor's chain from the plate's place to its laser
-// plane; one stand of the robot takes those of all its sensors. `touch`: the robot's pose alone, when a person says that the
-// tip touches.
+// plane; one stand of the robot takes those of all its sensors. `board_sights`: the board's points in the picture and where
+// the camera stands in the robot's base, of all its sensors too. `board_view`: the board's points alone. `touch`: the robot's
+// pose alone, when a person says that the tip touches.
 enum class CaptureKind {
     sphere_profile,
     board_and_stripe,
@@ -33,11 +34,15 @@ enum class CaptureKind {
     apex,
     board_points,
     board_chain,
+    board_sights,
+    board_view,
     touch,
     files
 };
 // A whole board must be in the picture, taken with the laser off where the sensor can switch it.
 bool shows_board(CaptureKind kind);
+// One stand of the robot takes a capture of each of its calibrated sensors.
+bool of_all_sensors(CaptureKind kind);
 
 // What the answer is good for. `sensor`: it can become the sensor's calibration. `record`: kept in the
 // project (a plate's place, a lens). `check`: it only judges the calibration in use.

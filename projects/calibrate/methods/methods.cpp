@@ -6,9 +6,9 @@ namespace seamwright {
 
 const std::vector<CalibrationMethod>& calibration_methods() {
     static const std::vector<CalibrationMethod> methods{
-        tcp_sphere_method(), stripe_camera_method(), hand_eye_method(), laser_plane_method(),
-        lut_method(),        static_method(),        camera_method(),   lens_method(),
-        plate_method(),      drift_method(),         on_part_method(),  nozzle_method()};
+        tcp_sphere_method(), stripe_camera_method(), hand_eye_method(), laser_plane_method(), lut_method(),
+        static_method(),     camera_method(),        lens_method(),     plate_method(),       stereo_method(),
+        bundle_method(),     drift_method(),         on_part_method(),  nozzle_method()};
     return methods;
 }
 

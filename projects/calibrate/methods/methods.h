@@ -14,6 +14,8 @@ CalibrationMethod static_method();
 CalibrationMethod camera_method();
 CalibrationMethod lens_method();
 CalibrationMethod plate_method();
+CalibrationMethod stereo_method();
+CalibrationMethod bundle_method();
 CalibrationMethod drift_method();
 CalibrationMethod on_part_method();
 CalibrationMethod nozzle_method();

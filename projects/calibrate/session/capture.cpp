@@ -98,6 +98,16 @@ Expected<json> stripe_entry(const json& settings, const SensorSetup& sensor, con
     return stripe_frame_json(o);
 }
 
+// A view of a board as calibrate camera takes it, with its outline for thumbnails.
+json view_json(const FoundBoard& board, const BoardSpec& spec) {
+    json points = json::array(), around = json::array();
+    for (std::size_t i = 0; i < board.pixel.size(); ++i)
+        points.push_back(
+            {{"object", vector_json(board.object_mm[i])}, {"pixel", vector_json(board.pixel[i])}});
+    for (const Eigen::Vector2d& p : outline(board, spec)) around.push_back({p.x(), p.y()});
+    return {{"points", std::move(points)}, {"outline", std::move(around)}};
+}
+
 // For thumbnails: where the board is in the picture.
 void note_outline(json& entry, const Calibration& base, const FoundBoard& board, const BoardSpec& spec) {
     entry["size"] = {base.model->camera.width, base.model->camera.height};
@@ -184,6 +194,30 @@ Expected<json> chain_entry(json& settings, const Text& where, const Calibration*
                 {"size", (*seen)["size"]}};
 }
 
+// The board's points in one sensor's picture, and where its camera stands in the robot's base.
+Expected<json> sights_entry(const Text& where, const Calibration* base, const BoardSearch& search,
+                            const BoardSpec& spec, const std::optional<Pose>& base_from_flange) {
+    auto seen = board_entry(where, base, search, spec, base_from_flange);
+    if (!seen) return seen;
+    if (base->flange_from_sensor.isApprox(Pose::Identity()))
+        return input_error("where the camera sits on the flange is not known", where,
+                           "calibrate hand-eye or with the sphere first");
+    const UncertainPose laser{base->flange_from_sensor, base->covariance};
+    const UncertainPose camera =
+        laser * UncertainPose{base->model->camera_from_laser.inverse(), Matrix6::Zero()};
+    const UncertainPose placed = UncertainPose{*base_from_flange, Matrix6::Zero()} * camera;
+    json sights = json::array();
+    for (std::size_t i = 0; i < search.board->pixel.size(); ++i)
+        sights.push_back({{"object", vector_json(search.board->object_mm[i])},
+                          {"pixel", vector_json(search.board->pixel[i])}});
+    return json{{"camera", camera_json(base->model->camera)},
+                {"world_from_camera",
+                 {{"pose", pose_json(placed.pose)}, {"covariance", matrix_json(placed.covariance)}}},
+                {"sights", std::move(sights)},
+                {"outline", (*seen)["outline"]},
+                {"size", (*seen)["size"]}};
+}
+
 // A method that works on pixels learns the image's size from its first capture.
 Expected<void> note_size(json& settings, const SensorSetup& sensor, const Frame& frame) {
     const json size = {frame.image.width, frame.image.height};
@@ -192,6 +226,14 @@ Expected<void> note_size(json& settings, const SensorSetup& sensor, const Frame&
                            "use one camera at one resolution");
     settings["size"] = size;
     return {};
+}
+
+Expected<json> view_entry(json& settings, const SensorSetup& sensor, const Frame& frame,
+                          const BoardSpec& spec) {
+    SEAM_OK(note_size(settings, sensor, frame));
+    const BoardSearch search = find_board(frame.image, spec);
+    if (!search.board) return tl::unexpected(no_board(spec, search.miss, Text("sensor {}", sensor.id)));
+    return view_json(*search.board, spec);
 }
 
 Expected<json> line_entry(json& settings, const SensorSetup& sensor, const Frame& frame) {
@@ -234,14 +276,22 @@ Expected<TakenCapture> capture_shot(const CalibrationMethod& method, const json&
             break;
         case CaptureKind::board_pose:
         case CaptureKind::board_points:
-        case CaptureKind::board_chain: {
+        case CaptureKind::board_chain:
+        case CaptureKind::board_sights: {
             SEAM_TRY(auto spec, board_of(settings));
             const auto found = find_board((board ? *board : stripe).image, spec);
             entry = method.capture == CaptureKind::board_pose
                         ? board_entry(where, base, found, spec, base_from_flange)
+                    : method.capture == CaptureKind::board_sights
+                        ? sights_entry(where, base, found, spec, base_from_flange)
                     : method.capture == CaptureKind::board_points
                         ? plate_entry(where, base, found, spec, base_from_flange)
                         : chain_entry(taken.settings, where, base, found, spec, base_from_flange);
+            break;
+        }
+        case CaptureKind::board_view: {
+            SEAM_TRY(auto spec, board_of(settings));
+            entry = view_entry(taken.settings, sensor, board ? *board : stripe, spec);
             break;
         }
         case CaptureKind::stripe_line:
@@ -261,8 +311,8 @@ Expected<TakenCapture> capture_shot(const CalibrationMethod& method, const json&
     taken.capture.entry = std::move(*entry);
     taken.capture.base_from_flange = base_from_flange;
     taken.capture.origin = "live";
-    // Each sensor has one chain, called after it.
-    if (method.capture == CaptureKind::board_chain) taken.capture.id = sensor.id;
+    // Of several sensors at once, each is called after its own.
+    if (of_all_sensors(method.capture)) taken.capture.id = sensor.id;
     return taken;
 }
 
@@ -314,12 +364,17 @@ Expected<ReadCaptures> read_json_captures(const CalibrationMethod& method, const
 
 }  // namespace
 
+bool reads_images(const CalibrationMethod& method) {
+    return method.capture == CaptureKind::board_and_stripe || method.capture == CaptureKind::board_pose ||
+           method.capture == CaptureKind::board_view;
+}
+
 Expected<ReadCaptures> read_captures(const CalibrationMethod& method, const json& settings,
                                      const Calibration* base, const std::filesystem::path& path,
                                      const ReadProgress& progress, const std::stop_token& cancel) {
     std::error_code code;
     if (!std::filesystem::is_directory(path, code)) return read_json_captures(method, settings, path);
-    if (method.capture != CaptureKind::board_and_stripe && method.capture != CaptureKind::board_pose)
+    if (!reads_images(method))
         return input_error("this method reads no images", path.string(), "give its JSON file");
     SEAM_TRY(auto spec, board_of(settings));
     SEAM_TRY(auto images, plate_images(path, {}));
@@ -341,6 +396,14 @@ Expected<ReadCaptures> read_captures(const CalibrationMethod& method, const json
         if (method.capture == CaptureKind::board_and_stripe) {
             c.entry = stripe_frame_json(o);
             read.captures.push_back(std::move(c));
+        } else if (method.capture == CaptureKind::board_view) {
+            read.settings["size"] = {o.width, o.height};
+            if (o.board) {
+                c.entry = view_json(*o.board, spec);
+                read.captures.push_back(std::move(c));
+            } else {
+                read.skipped.push_back(no_board(spec, o.miss, c.id).text());
+            }
         } else if (auto entry = board_entry(c.id, base, {o.board, o.miss}, spec, o.base_from_flange)) {
             c.entry = std::move(*entry);
             read.captures.push_back(std::move(c));
@@ -426,7 +489,7 @@ EntryPicture entry_picture(const CalibrationMethod& method, const json& settings
         picture.points = pixels_of(json::array({entry["pixel"]}));
         picture.outline = pixels_of(entry.value("flanks", json()));
     } else if (entry.is_object() && entry.contains("outline")) {
-        image_size(entry, picture);
+        image_size(method.capture == CaptureKind::board_view ? settings : entry, picture);
         picture.outline = picture.points = pixels_of(entry["outline"]);
     } else {
         picture.pixels = false;

@@ -27,11 +27,13 @@ struct ReadCaptures {
     nlohmann::json settings;
     std::vector<Text> skipped;  // sentences: images without a board
 };
-// A JSON file as the command line takes it, or, for stripe-camera and hand-eye, a folder of images with their
-// pose files. Cancelled = Error whose `what` is kCancelled (projects/station/acquire.h).
+// A JSON file as the command line takes it, or, where reads_images(), a folder of images with their pose files. Cancelled = Error whose `what` is kCancelled (projects/station/acquire.h).
 Expected<ReadCaptures> read_captures(const CalibrationMethod& method, const nlohmann::json& settings,
                                      const Calibration* base, const std::filesystem::path& path,
                                      const ReadProgress& progress, const std::stop_token& cancel);
+
+// Whether a folder of images can be read for it.
+bool reads_images(const CalibrationMethod& method);
 
 // What of the target an entry shows, for thumbnails and the coverage of the field. Pixels for images, mm (x,
 // z) for profiles.

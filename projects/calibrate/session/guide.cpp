@@ -17,6 +17,8 @@ const std::vector<TargetPlace>* views_of(const CalibrationMethod& method) {
         case CaptureKind::board_pose:
         case CaptureKind::board_points:
         case CaptureKind::board_chain:
+        case CaptureKind::board_sights:
+        case CaptureKind::board_view:
             return &plate_views();
         case CaptureKind::stripe_line:
             return &line_views();

@@ -125,7 +125,7 @@ bool stays_beside(const SessionState& state, const std::vector<std::string>& sen
 std::vector<std::string> shot_sensors(const CalibrationSession& session, const Project& project,
                                       const std::vector<std::string>& connected) {
     std::vector<std::string> ids{session.sensor_id()};
-    if (session.method().capture != CaptureKind::board_chain) return ids;
+    if (!of_all_sensors(session.method().capture)) return ids;
     for (const std::string& id : connected) {
         const Calibration* c = calibration_of(project, id);
         if (id != session.sensor_id() && c && c->model && c->robot_id == session.robot_id())

@@ -28,8 +28,8 @@ using CalibrationShots = std::vector<Expected<CalibrationShot>>;
 Expected<CalibrationShot> take_shot(Station& station, const SensorId& sensor_id, const RobotId& robot_id,
                                     bool board, const std::stop_token& cancel);
 
-// Whose pictures one capture takes, the session's own sensor first: that alone, or, where every capture is a sensor's
-// chain, all of `connected` that know their camera and the session's robot.
+// Whose pictures one capture takes, the session's own sensor first: that alone, or, of_all_sensors(),
+// all of `connected` that know their camera and the session's robot.
 std::vector<std::string> shot_sensors(const CalibrationSession& session, const Project& project,
                                       const std::vector<std::string>& connected);
 // The session's settings with what the method takes over (CalibrationMethod::prepare), for shots of these sensors.

@@ -5,7 +5,8 @@
 
 #include <random>
 
-#include "core/calibration/camera/bundle.h"
+#include "core/calibration/bundle/bundle.h"
+#include "core/calibration/bundle/stereo.h"
 #include "core/calibration/camera/lens.h"
 #include "core/calibration/pose/hand_eye.h"
 #include "core/calibration/stripe/laser_plane.h"
@@ -78,16 +79,23 @@ TEST_F(HostileData, ViewsThatAreAllTheSamePlace) {
 }
 
 TEST_F(HostileData, ObjectsOfSeveralCameras) {
-    const std::vector<PlacedCamera> cameras{{test::camera_640(), Pose::Identity()},
-                                            {test::camera_640(), numbers.pose()}};
-    for (int trial = 0; trial < 200; ++trial) {
+    const std::vector<PlacedCamera> cameras{{"a", test::camera_640(), {}},
+                                            {"b", test::camera_640(), {numbers.pose(), Matrix6::Zero()}}};
+    for (int trial = 0; trial < 60; ++trial) {
         std::vector<BundleSight> sights;
-        for (int i = 0; i < 3 + numbers.below(4); ++i)
-            sights.push_back({numbers.below(2), numbers.point(), numbers.pixel(), std::abs(numbers.any())});
-        const auto r = bundle_object(cameras, sights, numbers.pose());
-        if (r) {
-            EXPECT_TRUE(r->world_from_object.matrix().allFinite());
+        std::vector<StereoSight> pairs;
+        for (int i = 0; i < 3 + numbers.below(4); ++i) {
+            const std::string id = std::to_string(i);
+            sights.push_back({id, static_cast<std::size_t>(numbers.below(2)), numbers.point(),
+                              numbers.pixel(), std::abs(numbers.any())});
+            pairs.push_back({id, numbers.pixel(), numbers.pixel(), numbers.point()});
         }
+        if (const auto r = locate_object(cameras, sights, {{}, {}, numbers.pose()})) {
+            EXPECT_TRUE(r->world_from_object.matrix().allFinite());
+            expect_numbers(r->report);
+        }
+        if (const auto r = intersect(cameras[0], cameras[1], pairs, {}))
+            for (const StereoPoint& p : r->points) EXPECT_TRUE(p.world_mm.allFinite());
     }
 }
 

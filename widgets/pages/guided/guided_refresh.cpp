@@ -6,6 +6,7 @@
 
 #include "core/geometry/notation.h"
 #include "projects/calibrate/session/answer.h"
+#include "projects/calibrate/session/capture.h"
 #include "projects/file/stored_text.h"
 #include "projects/measure/measure.h"
 #include "widgets/calibrate/verdict_word.h"
@@ -86,8 +87,7 @@ void GuidedPage::refresh() {
     }
     const bool live = s.method().capture != CaptureKind::files;
     capture_box_->setVisible(live);
-    load_folder_->setVisible(s.method().capture == CaptureKind::board_and_stripe ||
-                             s.method().capture == CaptureKind::board_pose);
+    load_folder_->setVisible(reads_images(s.method()));
     refresh_stage();
     refresh_settings();
     refresh_table();
@@ -153,7 +153,7 @@ void GuidedPage::refresh_base() {
         return set_verdict(*base_, tr("Camera and laser plane are not calibrated yet: begin with them."),
                            Tone::attention);
     QString built = tr("Built on calibration %1, in use.").arg(text(base->id));
-    if (s.method().capture == CaptureKind::board_chain) {
+    if (of_all_sensors(s.method().capture)) {
         QStringList shot;
         for (const std::string& id : calibration_.shot_sensors()) {
             const Calibration* used = calibration_of(desk_.project(), id);

@@ -52,6 +52,7 @@ void add_filter(CommandLine& line);
 void add_feature(CommandLine& line);
 void add_match(CommandLine& line);
 void add_extract(CommandLine& line);
+void add_resolution(CommandLine& line);
 void add_align(CommandLine& line);
 void add_calibrate(CommandLine& line);
 void add_demo(CommandLine& line);

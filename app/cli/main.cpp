@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
     add_feature(line);
     add_match(line);
     add_extract(line);
+    add_resolution(line);
     add_align(line);
     add_calibrate(line);
     add_collision(line);

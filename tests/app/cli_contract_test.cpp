@@ -519,8 +519,8 @@ TEST_F(Cli, DeepJsonIsRefusedByEveryCommandThatReadsJson) {
                                                        {"sim-cell", deep},
                                                        {"import", new_file, "--from", deep},
                                                        {"import", new_file, "--from", inside}};
-        for (const char* method :
-             {"lens", "camera", "laser-plane", "lut", "tcp-sphere", "plate", "stereo", "bundle", "static", "hand-eye"})
+        for (const char* method : {"lens", "camera", "laser-plane", "lut", "tcp-sphere", "plate", "stereo",
+                                   "bundle", "static", "hand-eye"})
             commands.push_back({"calibrate", method, deep});
         // Pose files beside the images, and the list of a recording.
         std::filesystem::create_directories(folder / "images");

@@ -535,8 +535,8 @@ TEST_F(Import, TheLaserIsReadInItsColour) {
 }
 
 TEST_F(Import, EveryCalibrationSolvesItsOwnExample) {
-    for (const std::string method : {"lens", "camera", "laser-plane", "lut", "tcp-sphere", "plate", "stereo", "bundle", "static",
-                                     "hand-eye", "stripe-camera", "drift"}) {
+    for (const std::string method : {"lens", "camera", "laser-plane", "lut", "tcp-sphere", "plate", "stereo",
+                                     "bundle", "static", "hand-eye", "stripe-camera", "drift"}) {
         const std::string file = (folder / (method + ".json")).string();
         EXPECT_EQ(run({"calibrate", method, "--example", file}).exit_code, 0) << method;
         const json solved = answer({"calibrate", method, file}, 0);

@@ -45,6 +45,9 @@ struct Candidate {
     double statistic = 0;
     Change change;
 };
+// By the degrees of freedom that the change was looked for with: 1 to 3 along what an element can do, 6 of any motion.
+using Candidates = std::array<Candidate, 7>;
+using Statistics = std::array<double, 7>;
 
 class Diagnosing {
   public:
@@ -201,19 +204,35 @@ class Diagnosing {
         return {symmetric, symmetric * difference};
     }
 
-    static void take(Candidate& best, const Told& told, const Change& as) {
-        const Eigen::LDLT<Matrix6> solver(told.information);
-        const Vector6 motion = solver.solve(told.moment);
-        const double statistic = told.moment.dot(motion);
-        if (!(statistic > best.statistic)) return;
-        best.statistic = statistic;
-        best.change = as;
-        best.change.motion = motion;
-        best.change.covariance = solver.solve(Matrix6::Identity());
+    // Of any motion, and of what each element can do, the most telling with as many directions.
+    Statistics statistics_of(const Told& told, Moved what) {
+        Statistics all{};
+        all[6] = told.moment.dot(told.information.ldlt().solve(told.moment));
+        ++tried_;
+        if (what == Moved::cell && !options_.one_fixture) return all;
+        for (const Pattern& pattern : patterns_) {
+            const Eigen::VectorXd moment = pattern.transpose() * told.moment;
+            const Eigen::MatrixXd information = pattern.transpose() * told.information * pattern;
+            auto& best = all[static_cast<std::size_t>(moment.size())];
+            best = std::max(best, moment.dot(information.ldlt().solve(moment)));
+            ++tried_;
+        }
+        return all;
+    }
+
+    static void take(Candidates& best, const Statistics& statistics, const Told& told, const Change& as) {
+        for (std::size_t degrees = 1; degrees < best.size(); ++degrees) {
+            if (!(statistics[degrees] > best[degrees].statistic)) continue;
+            const Eigen::LDLT<Matrix6> solver(told.information);
+            best[degrees].statistic = statistics[degrees];
+            best[degrees].change = as;
+            best[degrees].change.motion = solver.solve(told.moment);
+            best[degrees].change.covariance = solver.solve(Matrix6::Identity());
+        }
     }
 
     // Of the cars `lists`, a carrier each, all that they tell of one step at every time.
-    void steps_of(const std::vector<std::size_t>& carriers, Moved what, Candidate& best) {
+    void steps_of(const std::vector<std::size_t>& carriers, Moved what, Candidates& best) {
         std::vector<Weighed> all(of_carrier_.size()), before(of_carrier_.size());
         std::vector<std::size_t> seen(of_carrier_.size(), 0), order;
         std::vector<Told> told(of_carrier_.size());
@@ -224,8 +243,8 @@ class Diagnosing {
             }
         std::ranges::sort(order);
         Told sum;
-        std::vector<std::pair<std::size_t, double>> course;  // first car after, statistic
-        Candidate own;
+        std::vector<std::pair<std::size_t, Statistics>> course;  // first car after
+        Candidates own;
         for (std::size_t i = 0; i + 1 < order.size(); ++i) {
             const std::size_t c = cars_[order[i]].carrier;
             before[c].add(weight_[order[i]], at_[order[i]]);
@@ -240,27 +259,29 @@ class Diagnosing {
             if (std::ranges::all_of(carriers,
                                     [&](std::size_t each) { return told[each].information.isZero(0); }))
                 continue;
-            ++tried_;
             Change as;
             as.what = what;
             as.carrier = c;
             as.first_car = order[i + 1];
-            const double statistic = sum.moment.dot(sum.information.ldlt().solve(sum.moment));
-            course.emplace_back(as.first_car, statistic);
-            take(own, sum, as);
+            const Statistics statistics = statistics_of(sum, what);
+            course.emplace_back(as.first_car, statistics);
+            take(own, statistics, sum, as);
         }
-        if (!(own.statistic > best.statistic)) return;
-        own.change.earliest = own.change.latest = own.change.first_car;
-        for (const auto& [car, statistic] : course)
-            if (statistic > own.statistic - kStepDrop * inflation_) {
-                own.change.earliest = std::min(own.change.earliest, car);
-                own.change.latest = std::max(own.change.latest, car);
-            }
-        best = own;
+        for (std::size_t degrees = 1; degrees < own.size(); ++degrees) {
+            Candidate& found = own[degrees];
+            if (!(found.statistic > best[degrees].statistic)) continue;
+            found.change.earliest = found.change.latest = found.change.first_car;
+            for (const auto& [car, statistics] : course)
+                if (statistics[degrees] > found.statistic - kStepDrop * inflation_) {
+                    found.change.earliest = std::min(found.change.earliest, car);
+                    found.change.latest = std::max(found.change.latest, car);
+                }
+            best[degrees] = found;
+        }
     }
 
     // A line in time, each carrier about a mean of its own.
-    void trend_of(const std::vector<std::size_t>& carriers, Moved what, Candidate& best) {
+    void trend_of(const std::vector<std::size_t>& carriers, Moved what, Candidates& best) {
         double first = std::numeric_limits<double>::infinity(), last = -first;
         Told told;
         std::size_t count = 0;
@@ -291,13 +312,12 @@ class Diagnosing {
         told.moment /= span;
         told.information = 0.5 * (told.information + told.information.transpose()).eval();
         if (!(told.information.ldlt().vectorD().minCoeff() > 0)) return;
-        ++tried_;
         Change as;
         as.what = what;
         as.how = MovedBy::trend;
         as.carrier = carriers.front();
         as.first_car = as.earliest = as.latest = first_car;
-        take(best, told, as);
+        take(best, statistics_of(told, what), told, as);
     }
 
     std::optional<Change> best() {
@@ -305,7 +325,7 @@ class Diagnosing {
         std::vector<std::size_t> all;
         for (std::size_t c = 0; c < of_carrier_.size(); ++c)
             if (!of_carrier_[c].empty()) all.push_back(c);
-        Candidate found;
+        Candidates found;
         const Moved of_all = all.size() == 1 && !options_.one_fixture ? Moved::carrier : Moved::cell;
         steps_of(all, of_all, found);
         trend_of(all, of_all, found);
@@ -314,14 +334,20 @@ class Diagnosing {
                 steps_of({c}, Moved::carrier, found);
                 trend_of({c}, Moved::carrier, found);
             }
-        if (!(found.statistic > 0)) return std::nullopt;
-        const double degrees = std::max(degrees_ - 5, 1.0);
-        const double f = found.statistic / inflation_ * degrees / (degrees_ * 6);
-        found.change.statistic = found.statistic / inflation_;
-        found.change.probability = std::min(1.0, f_upper(6, degrees, f) * static_cast<double>(tried_));
-        if (!(found.change.probability < options_.alarm)) return std::nullopt;
-        found.change.covariance *= inflation_;
-        return found.change;
+        std::optional<Change> best;
+        for (std::size_t m = 1; m < found.size(); ++m) {
+            if (!(found[m].statistic > 0)) continue;
+            const auto with = static_cast<double>(m);
+            const double degrees = std::max(degrees_ - with + 1, 1.0);
+            const double f = found[m].statistic / inflation_ * degrees / (degrees_ * with);
+            const double probability = std::min(1.0, f_upper(with, degrees, f) * static_cast<double>(tried_));
+            if (!(probability < options_.alarm) || (best && best->probability <= probability)) continue;
+            best = found[m].change;
+            best->statistic = found[m].statistic / inflation_;
+            best->probability = probability;
+        }
+        if (best) best->covariance *= inflation_;
+        return best;
     }
 
     void take_off(const Change& change) {

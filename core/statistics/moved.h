@@ -8,10 +8,11 @@
 // off both neighbours of their carrier out of all.
 //
 // Changes. A step of one carrier after its car j, a step of all carriers at one time (cell), and a trend of either, linear in
-// time. Each has a generalised likelihood ratio T = d^T C^-1 d of what it would change (d, with C as of weighted means), the
-// largest T is taken, its change taken off, and again, until none is left beyond chance. T / (6 u) is F with 6 and nu - 5
-// degrees, u = (1 + r) / (1 - r) where the cars' lag-1 correlation r (of the differences: it knows of no steps) is positive;
-// its probability times the number of all steps and trends that were tried (Bonferroni) has to be below
+// time. Each has generalised likelihood ratios T of what it would change (means weighted by W^-1): of any motion, with 6 degrees,
+// and of what each element can do, with as many degrees m as it holds directions, which finds a small fault of an element sooner.
+// T (nu - m + 1) / (u nu m) is F with m and nu - m + 1 degrees, nu those of V, u = (1 + r) / (1 - r) where the cars' lag-1
+// correlation r (of the differences: it knows of no steps) is positive. The least probable one is taken, its change taken off, and
+// again, until none is left beyond chance: its probability times the number of all that was tried (Bonferroni) has to be below
 // DiagnosisOptions::alarm. A step of all carriers beats that of one by as many carriers as share it.
 //
 // Which element. Element e held in m directions moves the part by F_e a for a (mm) along them (fixture_patterns). With

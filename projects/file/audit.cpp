@@ -152,7 +152,7 @@ std::string audit_csv(const Audit& audit) {
     return out;
 }
 
-std::string audit_json(const Audit& audit) {
+nlohmann::json audit_json(const Audit& audit) {
     nlohmann::json out = {
         {"format", "seamwright audit 1"}, {"file", audit.file}, {"entries", nlohmann::json::array()}};
     for (const AuditLine& line : audit.lines) {
@@ -168,7 +168,7 @@ std::string audit_json(const Audit& audit) {
                               {"text", line.event_text}};
         out["entries"].push_back(std::move(entry));
     }
-    return dump_messages(out) + "\n";
+    return out;
 }
 
 Expected<std::vector<Error>> audit_against(const Audit& audit, const std::string& earlier,

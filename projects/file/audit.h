@@ -7,6 +7,7 @@
 // "text"}}]}. The event's text is that of the file, as the digest covers it: SHA-256 of the netstrings of "events", the
 // entry's subject, utc, run, kind, subject, text.
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,7 @@ struct Audit {
 };
 Expected<Audit> audit_of(const ProjectFile& file);
 std::string audit_csv(const Audit& audit);
-std::string audit_json(const Audit& audit);
+nlohmann::json audit_json(const Audit& audit);
 
 // Whether the file's chain goes on from what was exported earlier. Empty: it does. Error (input): that is no export.
 Expected<std::vector<Error>> audit_against(const Audit& audit, const std::string& earlier,

@@ -92,7 +92,7 @@ TEST_F(UserCommand, AnAuditNamesTheBrokenEntry) {
     const std::string door = file.string(), csv = (folder / "audit.csv").string(),
                       exported = (folder / "audit.json").string();
     done({"type", "add", door, "left"});
-    done({"audit", door, "--csv", csv, "--out-json", exported});
+    done({"audit", door, "--csv", csv, "--json", exported});
     EXPECT_THAT(slurp(csv), HasSubstr("\"project\",\"part_types left\""));
     fs::copy_file(file, folder / "old.seam");
     done({"type", "add", door, "right"});

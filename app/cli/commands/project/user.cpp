@@ -92,20 +92,22 @@ void add_password_options(CLI::App* command, const std::shared_ptr<UserArguments
 }
 
 struct AuditArguments {
-    std::string file, csv, out_json, head, since_export;
+    std::string file, csv, head, since_export;
 };
 
 Expected<Answer> audit_command(const AuditArguments& a) {
-    SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
-    SEAM_TRY(const auto audit, audit_of(file));
+    // To write, so that the chain of an older file begins in the file and not in memory alone.
+    auto file = ProjectFile::open(a.file);
+    if (!file) file = ProjectFile::open(a.file, FileAccess::read_only);
+    if (!file) return tl::unexpected(file.error());
+    SEAM_TRY(const auto audit, audit_of(*file));
     Answer answer;
     json findings = json::array();
     for (const Error& e : audit.findings) findings.push_back(e.sentence());
-    for (const auto& [path, text] : {std::pair(a.csv, &audit_csv), std::pair(a.out_json, &audit_json)})
-        if (!path.empty()) {
-            SEAM_OK(write_text_file(path, text(audit)));
-            answer.text += path + " written\n";
-        }
+    if (!a.csv.empty()) {
+        SEAM_OK(write_text_file(a.csv, audit_csv(audit)));
+        answer.text += a.csv + " written\n";
+    }
     std::vector<Error> against;
     if (!a.since_export.empty()) {
         SEAM_TRY(const auto earlier, read_text_file(a.since_export));
@@ -117,10 +119,9 @@ Expected<Answer> audit_command(const AuditArguments& a) {
     }
     for (const Error& e : against) findings.push_back(e.sentence());
     const std::string head = audit.lines.empty() ? "" : audit.lines.back().entry.hash;
-    answer.json = {{"status", findings.empty() ? "ok" : "broken"},
-                   {"entries", audit.lines.size()},
-                   {"head", head},
-                   {"findings", findings}};
+    answer.json = audit_json(audit);
+    answer.json.update(
+        {{"status", findings.empty() ? "ok" : "broken"}, {"head", head}, {"findings", findings}});
     answer.text += fmt::format("{} entries, the last one's hash {}\n", audit.lines.size(), head);
     for (const auto& s : findings) answer.text += "  " + s.get<std::string>() + "\n";
     answer.text += findings.empty() ? "every entry follows from the one before, and the file is as they say\n"
@@ -202,12 +203,10 @@ void add_audit(CommandLine& line) {
         "an older "
         "state or made anew: keep an export, or the last hash, elsewhere,\nand hold them against the "
         "file with --since-export and --head. Exit 3: the chain is broken.",
-        "seamwright audit door.seam --csv audit.csv\n"
+        "seamwright audit door.seam --csv audit.csv --json audit.json\n"
         "  seamwright audit door.seam --since-export audit-may.json");
     command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
-    command->add_option("--csv", a->csv, "One line an entry")->type_name("FILE.csv");
-    command->add_option("--out-json", a->out_json, "The same as JSON, with what each event says")
-        ->type_name("FILE.json");
+    command->add_option("--csv", a->csv, "One line an entry, with what each event says; --json FILE is the same as JSON")->type_name("FILE.csv");
     command
         ->add_option("--since-export", a->since_export,
                      "An earlier export, CSV or JSON: its entries have to be in the file as they were")

@@ -92,9 +92,11 @@ Eigen::Vector2d straight_direction(const Profile& p) {
 // A registration is taken over when the contour was found and, for a straight one, only across it.
 bool accept(const Registration& r, const Eigen::Vector2d& reference, const Eigen::Vector2d& straight,
             Registered& out) {
-    // A contour that becomes another one while the robot travels is what is looked for here.
+    // A contour that becomes another one while the robot travels is what is looked for here: found over almost all of
+    // its length it counts, however little it fits there.
+    const bool changed = r.status == RegistrationStatus::no_match && r.inlier_share >= kWholeShare;
     if ((r.status != RegistrationStatus::ok && r.status != RegistrationStatus::sliding &&
-         r.status != RegistrationStatus::other_shape) ||
+         r.status != RegistrationStatus::other_shape && !changed) ||
         r.inlier_share < kSmallestShare)
         return false;
     out.shift = r.scene_from_template * reference - reference;

@@ -22,8 +22,8 @@ constexpr int kWindow = 40;               // lines over which the stripe may be 
 constexpr int kTrackGap = 6;              // lines over which a track may be interrupted
 constexpr double kReflection = 2.5;       // of a candidate of a track that another one outlasts, per line:
     // more than leaving the line out, however the stripe is broken there
-constexpr int kOutlasts =
-    12;  // points of the longer one beyond either end of the shorter, or the field's end
+constexpr int kOutlasts = 12;  // lines by which a stretch is shorter than another at an end
+constexpr int kAlone = 30;     // of the kWindow lines beyond its end, on which the other one is seen alone
 constexpr double kSideBySide = 0.08;  // share of the shorter one's lines on which both are seen
 constexpr double kIntensityCost = 1;  // of a candidate of foreign brightness
 constexpr double kForeign = 0.7;      // logarithm of the brightness ratio from which it is foreign,
@@ -168,9 +168,28 @@ void join_tracks(const Workspace& w, const Model& m, Tracks& t) {
 }
 
 // A reflection begins or ends where the stripe goes on: a stretch that another one, seen beside it here and there,
-// outlasts at one end at least and does not fall short of at the other. At a step or at the field's rim both may end.
+// outlasts at one end at least, alone there, and does not fall short of at the other. At a step or at the field's rim
+// both may end.
 void find_reflections(const Workspace& w, Tracks& t) {
     const auto piece_of = [&](int c) { return t.tracks[std::size_t(t.track_of[std::size_t(c)])].piece; };
+    // Lines from..to on which the stretch is seen and no other one. A stripe that is interrupted has its reflection to
+    // itself for a while, and then both go on.
+    const auto alone = [&](int from, int to, int piece) {
+        int lines = 0;
+        for (std::size_t k = 0; k + 1 < w.first.size(); ++k) {
+            const int line = w.candidates[std::size_t(w.first[k])].line;
+            if (line < from || line > to) continue;
+            bool here = false, others = false;
+            for (int c = w.first[k]; c < w.first[k + 1]; ++c) {
+                const int other = piece_of(c);
+                here |= other == piece;
+                others |=
+                    other >= 0 && other != piece && t.stretches[std::size_t(other)].points >= kWholeTrack;
+            }
+            lines += here && !others;
+        }
+        return lines;
+    };
     for (std::size_t a = 0; a < t.stretches.size(); ++a) {
         Stretch& s = t.stretches[a];
         if (s.points < kWholeTrack) continue;
@@ -189,8 +208,9 @@ void find_reflections(const Workspace& w, Tracks& t) {
             const Stretch& o = t.stretches[b];
             if (b == a || o.points < kWholeTrack || t.beside[b] < std::max(4., kSideBySide * s.points))
                 continue;
-            const int before = s.first_line - o.first_line, behind = o.last_line - s.last_line;
-            if (std::min(before, behind) > -kOutlasts && std::max(before, behind) >= kOutlasts)
+            if (std::min(s.first_line - o.first_line, o.last_line - s.last_line) <= -kOutlasts) continue;
+            if (alone(s.first_line - kWindow, s.first_line - 1, int(b)) >= kAlone ||
+                alone(s.last_line + 1, s.last_line + kWindow, int(b)) >= kAlone)
                 s.reflection = true;
         }
     }

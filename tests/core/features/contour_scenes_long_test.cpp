@@ -40,7 +40,7 @@ const std::vector<Kind>& kinds() {
         {"Z-fold, nothing asked for", z_fold, 1},
         {"bare edge with burr", burr_end, 0.95},
         {"fillet weld, toe in a window", weld_toe, 0.99},
-        {"embossed bead, its top", [](Dice& d) { return bead_top(d, true); }, 0.99},
+        {"embossed bead, its top", [](Dice& d) { return bead_top(d, true); }, 0.97},
         {"sharp ridge, its top", [](Dice& d) { return bead_top(d, false); }, 1},
         {"rim radius 2 to 8, its centre", rim_centre, 0.95},
         {"template of any joint", template_of, 0.94},

@@ -17,6 +17,8 @@
 namespace seamwright {
 namespace {
 
+constexpr double kLeastCornerSigma_px = 1e-3;  // exact corners do not make a prior infinitely weak
+
 // From simple to rich.
 constexpr CameraFreedom kLadder[] = {
     {false, false, 0, false}, {false, false, 1, false}, {false, true, 1, false}, {true, true, 1, false},
@@ -339,18 +341,26 @@ Expected<CameraResult> calibrate_camera(const CameraData& input, const CameraOpt
         solution = refine_camera(data, used, freedom, solution);
     }
     result.freedom = freedom;
+    const auto redundancy_of = [&](const CameraSolution& s) {
+        return 2.0 * static_cast<double>(s.points) - 6.0 * static_cast<double>(data.views.size()) -
+               static_cast<double>(freedom_basis(freedom).cols());
+    };
+    // What the model holds is held as well as cameras are built, beside corners as good as they turn out.
+    const bool exactly = options.freedom.has_value();
+    for (int round = 0; !exactly && round < 2 && redundancy_of(solution) > 0; ++round)
+        solution =
+            refine_camera(data, used, freedom, solution,
+                          std::max(kLeastCornerSigma_px, std::sqrt(solution.cost / redundancy_of(solution))));
+    const double redundancy = redundancy_of(solution);
     result.camera = camera_of(solution.intrinsics, data.width, data.height);
     result.rms_px = std::sqrt(solution.cost / static_cast<double>(solution.points));
-    const Eigen::MatrixXd basis = freedom_basis(freedom);
-    const double redundancy = 2.0 * static_cast<double>(solution.points) -
-                              6.0 * static_cast<double>(data.views.size()) -
-                              static_cast<double>(basis.cols());
     result.sigma_px = redundancy > 0 ? std::sqrt(solution.cost / redundancy) : 0;
     result.covered_share = hull_share(data);
 
+    const Eigen::MatrixXd& basis = solution.basis;
     const Eigen::MatrixXd unit =
         redundancy > 0 && solution.converged ? shared_covariance(solution.normal) : Eigen::MatrixXd();
-    const double variance = result.sigma_px * result.sigma_px;
+    const double variance = exactly ? result.sigma_px * result.sigma_px : 1;
     auto& report = result.report;
     for (std::size_t i = 0; i < 9; ++i)
         report.parameters.push_back(

@@ -36,7 +36,8 @@ struct CameraData {
     std::vector<CameraPoints> views;
 };
 
-// Which intrinsics the data may move. What may not: fy = fx, centre of the image, zero distortion.
+// Which intrinsics the data alone say. Of the others (fy = fx, centre of the image, zero distortion) is known how
+// cameras are built: held_intrinsics().
 struct CameraFreedom {
     bool two_focals = true;
     bool centre = true;
@@ -46,8 +47,9 @@ struct CameraFreedom {
 
 struct CameraOptions {
     std::vector<std::string> exclude;  // ids of views left out of the solution
-    std::optional<CameraFreedom>
-        freedom;  // absent: by cross-validation, the richest model within one standard error of the best
+    // Absent: by cross-validation, the richest model within one standard error of the best, the rest held as cameras
+    // are built. Given: what it does not free is meant to be exact.
+    std::optional<CameraFreedom> freedom;
     double outlier_sigmas = 6;  // a point farther off (robust sigma) is named and left out; 0 = keep all
 };
 
@@ -117,17 +119,21 @@ CameraPoints chosen(const CameraPoints& view, const std::vector<char>& used);
 // Sum of squares of one view, in px^2. Infinity when a point falls behind the camera.
 double squares_px2(const Intrinsics& k, const Pose& camera_from_target, const CameraPoints& view);
 
-// Bare joint refinement from a start, no verdict. `normal` is that of the free unknowns at the solution.
+// Bare joint refinement from a start, no verdict. `normal` is that of the unknowns at the solution, which move the
+// intrinsics by `basis`. With a corner sigma what `freedom` does not solve for is held within held_intrinsics(), and
+// `normal` is in units of that sigma; without, it is held exactly, and `normal` is for a sigma of 1 px.
 struct CameraSolution {
     Intrinsics intrinsics = Intrinsics::Zero();
     std::vector<Pose> camera_from_target;
     NormalBlocks normal;
-    double cost = 0;  // px^2; infinity at an impossible start
+    Eigen::MatrixXd basis;
+    double cost = 0;  // px^2, of the corners; infinity at an impossible start
     std::size_t points = 0;
     bool converged = false;
 };
 CameraSolution refine_camera(const CameraData& data, const std::vector<std::vector<char>>& used,
-                             const CameraFreedom& freedom, const CameraSolution& start);
+                             const CameraFreedom& freedom, const CameraSolution& start,
+                             std::optional<double> corner_sigma_px = std::nullopt);
 
 // Start from closed forms: one focal length, centre in the middle, k1, and poses. nullopt when no view gives
 // a pose.

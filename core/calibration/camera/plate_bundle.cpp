@@ -212,20 +212,25 @@ PlateBundleFit solve_plate_bundle(const PlateBundle& problem, const PlateBundleS
 }
 
 CameraSolution refine_camera(const CameraData& data, const std::vector<std::vector<char>>& used,
-                             const CameraFreedom& freedom, const CameraSolution& start) {
+                             const CameraFreedom& freedom, const CameraSolution& start,
+                             std::optional<double> corner_sigma_px) {
     PlateBundle rigid;
     rigid.data = &data;
     rigid.point_used = used;
     rigid.freedom = freedom;
-    rigid.hold_exactly = true;
-    rigid.corner_sigma_px = 1;
+    rigid.hold_exactly = !corner_sigma_px;
+    rigid.corner_sigma_px = corner_sigma_px.value_or(1);
     PlateBundleState state;
     state.intrinsics = start.intrinsics;
     state.camera_from_target = start.camera_from_target;
     PlateBundleFit fit = solve_plate_bundle(rigid, state);
-    return {fit.state.intrinsics,  std::move(fit.state.camera_from_target),
-            std::move(fit.normal), fit.cost,
-            fit.corners,           fit.converged};
+    return {fit.state.intrinsics,
+            std::move(fit.state.camera_from_target),
+            std::move(fit.normal),
+            std::move(fit.basis),
+            std::isfinite(fit.cost) ? fit.corner_cost : fit.cost,
+            fit.corners,
+            fit.converged};
 }
 
 }  // namespace seamwright

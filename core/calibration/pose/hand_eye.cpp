@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/calibration/pose/hand_eye_noise.h"
 #include "core/calibration/pose/hand_eye_solve.h"
 #include "core/calibration/pose/hand_eye_start.h"
 #include "core/calibration/pose_set.h"
@@ -172,6 +173,18 @@ void leave_out_wrong_pairs(Chain& chain, Pose& x, Pose& y, Scales& scales) {
     }
 }
 
+void state_rms(const Chain& chain, const Pose& x, const Pose& y, HandEyeResult& result) {
+    double squares_mm = 0, squares_rad = 0;
+    for (size_t i = 0; i < chain.size(); ++i) {
+        if (!chain.used[i]) continue;
+        squares_mm += residual_mm(chain, i, x, y).squaredNorm();
+        squares_rad += residual_rad(chain, i, x, y).squaredNorm();
+    }
+    const double n = static_cast<double>(chain.used_count());
+    result.rms_mm = std::sqrt(squares_mm / n);
+    result.rms_deg = deg_from_rad(std::sqrt(squares_rad / n));
+}
+
 HoldOut verify(const Chain& chain, const Pose& x, const Pose& y, const Scales& scales) {
     HoldOut result;
     if (chain.used_count() < 4) return result;
@@ -286,14 +299,7 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
         result.notices.push_back(Text("not used, contradicting the others: {}", wrong));
 
     const double n = static_cast<double>(chain.used_count());
-    double squares_t = 0, squares_r = 0;
-    for (size_t i = 0; i < pairs.size(); ++i) {
-        if (!chain.used[i]) continue;
-        squares_t += residual_mm(chain, i, x, y).squaredNorm();
-        squares_r += residual_rad(chain, i, x, y).squaredNorm();
-    }
-    result.rms_mm = std::sqrt(squares_t / n);
-    result.rms_deg = deg_from_rad(std::sqrt(squares_r / n));
+    state_rms(chain, x, y, result);
     result.sigma_mm = scales.mm;
     result.sigma_deg = deg_from_rad(scales.rad);
     result.pairs_used = static_cast<int>(n);
@@ -318,19 +324,19 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
     }
 
     result.status = HandEyeStatus::ok;
-    result.x = x;
-    result.y = y;
+    const Weighed weighed = weigh(chain, mount == Mount::eye_to_hand, x, y, scales);
+    x = result.x = weighed.x;
+    y = result.y = weighed.y;
+    state_rms(chain, x, y, result);
     for (size_t i = 0; i < pairs.size(); ++i) {
         report.poses[i].rms_mm = residual_mm(chain, i, x, y).norm();
         report.poses[i].deg = deg_from_rad(residual_rad(chain, i, x, y).norm());
     }
-    const double student = student_quantile(0.975, std::max(1.0, 6 * n - 12)) / kNormal95;
-    const Matrix12 covariance = known.covariance * student * student;
-    result.covariance_x = covariance.topLeftCorner<6, 6>();
-    result.covariance_y = covariance.bottomRightCorner<6, 6>();
+    result.covariance_x = weighed.covariance.topLeftCorner<6, 6>();
+    result.covariance_y = weighed.covariance.bottomRightCorner<6, 6>();
     add_pose(report, x);
     add_pose(report, y, "target_");
-    state_covariance(report, covariance);
+    state_covariance(report, weighed.covariance);
     report.hold_out = verify(chain, x, y, scales);
 
     const double check_mm = std::isnan(report.hold_out.rms_mm) ? result.rms_mm : report.hold_out.rms_mm;

@@ -17,11 +17,12 @@
 //     r_t = A_i X t_Ci - t_Y  [mm],   r_r = log(R_Y^T R_Ai R_X R_Ci)  [rad],   sum |r_t|^2 / s_t^2 + |r_r|^2
 //     / s_r^2
 // where s_t and s_r are estimated from the residuals themselves (variance components), so neither unit nor
-// lever is weighed by hand.
+// lever is weighed by hand. So wrong pairs are found. The answer then weighs the pairs by what cameras and robots err by
+// (hand_eye_noise.h).
 //
-// Noise model: isotropic independent errors of the target's position and orientation, seen in the frame of Y;
-// robot and camera errors both end there. Where the pairs' own residuals (sandwich covariance, a pair a cluster)
-// scatter more in some direction of the unknowns, that counts there. Covariances carry Student's factor: value +- 1.96 sigma holds 95 %.
+// Noise model: pairs independent; each errs across the sight of the target, along it, in tilt and in turn, and with the
+// robot's turn, by five variances that are estimated. Covariances hold what this estimating adds: value +- 1.96 sigma
+// holds 95 %.
 // Degenerate: one orientation (X's translation is free), rotations about one axis (translation along it and
 // the turn about it are free): status undetermined, in words. A pair that the others contradict is found,
 // named and left out.

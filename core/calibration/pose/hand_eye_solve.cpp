@@ -16,36 +16,6 @@ using Vector12 = Eigen::Matrix<double, 12, 1>;
 constexpr double kSmallest_mm = 1e-6, kSmallest_rad = 1e-8;  // weights of exact data stay finite
 constexpr double kFloor_mm = 0.02, kFloor_rad = 2e-4;  // no camera and robot are better: for determinability
 
-// Residuals and derivatives, six rows a used pair, over their scales.
-struct Linear {
-    Eigen::VectorXd residuals;
-    Eigen::MatrixXd jacobian;
-};
-
-Linear linearise_pairs(const Chain& chain, const Pose& x, const Pose& y, const Scales& s) {
-    const auto rows = static_cast<Eigen::Index>(6 * chain.used_count());
-    Linear at{Eigen::VectorXd(rows), Eigen::MatrixXd::Zero(rows, 12)};
-    Eigen::Index row = 0;
-    for (std::size_t i = 0; i < chain.size(); ++i) {
-        if (!chain.used[i]) continue;
-        const Eigen::Matrix3d ra = chain.a[i].linear();
-        const Eigen::Vector3d turn = residual_rad(chain, i, x, y);
-        at.residuals.segment<3>(row) = residual_mm(chain, i, x, y) / s.mm;
-        at.residuals.segment<3>(row + 3) = turn / s.rad;
-        auto j = at.jacobian.middleRows<6>(row);
-        j.block<3, 3>(0, 0) = ra / s.mm;
-        j.block<3, 3>(0, 3) = -ra * skew(x.linear() * chain.c[i].translation()) / s.mm;
-        j.block<3, 3>(0, 6) = -Eigen::Matrix3d::Identity() / s.mm;
-        // log(Exp(d) E) = r + J_l^-1(r) d, J_l^-1 = I - [r]x / 2 to first order in the residual r.
-        const Eigen::Matrix3d left =
-            (Eigen::Matrix3d::Identity() - 0.5 * skew(turn)) * y.linear().transpose() / s.rad;
-        j.block<3, 3>(3, 3) = left * ra;
-        j.block<3, 3>(3, 9) = -left;
-        row += 6;
-    }
-    return at;
-}
-
 double cost_of(const Chain& chain, const Pose& x, const Pose& y, const Scales& s, double k) {
     double cost = 0;
     for (std::size_t i = 0; i < chain.size(); ++i) {
@@ -74,33 +44,6 @@ Scales estimated_scales(const Chain& chain, const Pose& x, const Pose& y, const 
     };
     return {std::max(kSmallest_mm, s.mm * sigma(mm, squares_mm)),
             std::max(kSmallest_rad, s.rad * sigma(rad, squares_rad))};
-}
-
-// The covariance as the pairs themselves scatter (Liang and Zeger's sandwich, each residual freed from its own
-// other pairs see it), in the directions in which it is the larger: a camera knows the target's distance and
-// tilt ten times worse than its place across, and a turn and a shift of one pair err together.
-Matrix12 by_pairs(const Linear& at, const Matrix12& isotropic) {
-    Matrix12 meat = Matrix12::Zero();
-    const Eigen::Index pairs = at.residuals.size() / 6;
-    for (Eigen::Index i = 0; i < pairs; ++i) {
-        const Eigen::Matrix<double, 6, 12> j = at.jacobian.middleRows<6>(6 * i);
-        const Vector6 r = at.residuals.segment<6>(6 * i);
-        // I - J C J^T; a pair that alone knows something has no residual there.
-        const SymmetricEigen left = symmetric_eigen(Matrix6::Identity() - j * isotropic * j.transpose());
-        const Vector6 alone = left.vectors.transpose() * r;
-        const Vector6 others = left.vectors * alone.cwiseQuotient(left.values.cwiseMax(0.05).cwiseSqrt());
-        const Vector12 pull = j.transpose() * others;
-        meat.noalias() += pull * pull.transpose();
-    }
-    const Eigen::LLT<Matrix12> root(isotropic);
-    if (root.info() != Eigen::Success) return isotropic;
-    const Matrix12 l = root.matrixL();
-    const SymmetricEigen ratio = symmetric_eigen(l.transpose() * meat * l);
-    // Where the pairs scatter alike the largest ratio comes out near (1 + sqrt(12 / n))^2 by chance; its root is
-    // taken off before it counts, so that such pairs are not stated too unsure.
-    const double chance = 1 + std::sqrt(12.0 / std::max(1.0, static_cast<double>(pairs)));
-    return l * ratio.vectors * (ratio.values / chance).cwiseMax(1).asDiagonal() * ratio.vectors.transpose() *
-           l.transpose();
 }
 
 // By eigenvalues of the scaled matrix, so that an open direction comes out as large as it is.
@@ -133,6 +76,30 @@ Eigen::Vector3d residual_rad(const Chain& chain, std::size_t i, const Pose& x, c
 double pair_square(const Chain& chain, std::size_t i, const Pose& x, const Pose& y, const Scales& s) {
     return residual_mm(chain, i, x, y).squaredNorm() / (s.mm * s.mm) +
            residual_rad(chain, i, x, y).squaredNorm() / (s.rad * s.rad);
+}
+
+Linear linearise_pairs(const Chain& chain, const Pose& x, const Pose& y, const Scales& s) {
+    const auto rows = static_cast<Eigen::Index>(6 * chain.used_count());
+    Linear at{Eigen::VectorXd(rows), Eigen::MatrixXd::Zero(rows, 12)};
+    Eigen::Index row = 0;
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+        if (!chain.used[i]) continue;
+        const Eigen::Matrix3d ra = chain.a[i].linear();
+        const Eigen::Vector3d turn = residual_rad(chain, i, x, y);
+        at.residuals.segment<3>(row) = residual_mm(chain, i, x, y) / s.mm;
+        at.residuals.segment<3>(row + 3) = turn / s.rad;
+        auto j = at.jacobian.middleRows<6>(row);
+        j.block<3, 3>(0, 0) = ra / s.mm;
+        j.block<3, 3>(0, 3) = -ra * skew(x.linear() * chain.c[i].translation()) / s.mm;
+        j.block<3, 3>(0, 6) = -Eigen::Matrix3d::Identity() / s.mm;
+        // log(Exp(d) E) = r + J_l^-1(r) d, J_l^-1 = I - [r]x / 2 to first order in the residual r.
+        const Eigen::Matrix3d left =
+            (Eigen::Matrix3d::Identity() - 0.5 * skew(turn)) * y.linear().transpose() / s.rad;
+        j.block<3, 3>(3, 3) = left * ra;
+        j.block<3, 3>(3, 9) = -left;
+        row += 6;
+    }
+    return at;
 }
 
 void refine(const Chain& chain, Pose& x, Pose& y, const Scales& s, double k, int most_iterations) {
@@ -196,8 +163,7 @@ Scales solve(const Chain& chain, Pose& x, Pose& y, Scales scales) {
 Determination determination(const Chain& chain, const Pose& x, const Pose& y, const Scales& scales) {
     const Scales floor{std::max(scales.mm, kFloor_mm), std::max(scales.rad, kFloor_rad)};
     const Matrix12 floored = inverse_information(linearise_pairs(chain, x, y, floor));
-    const Linear at = linearise_pairs(chain, x, y, scales);
-    return {by_pairs(at, inverse_information(at)), largest_sigma(floored, 0), largest_sigma(floored, 3)};
+    return {largest_sigma(floored, 0), largest_sigma(floored, 3)};
 }
 
 }  // namespace seamwright::hand_eye

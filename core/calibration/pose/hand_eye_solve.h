@@ -40,9 +40,16 @@ Scales scales_from_medians(const Chain& chain, const Pose& x, const Pose& y);
 // Least squares with the two scales estimated along.
 Scales solve(const Chain& chain, Pose& x, Pose& y, Scales scales);
 
+// Residuals and derivatives by the tangents of X and Y, six rows a used pair, over the scales.
+struct Linear {
+    Eigen::VectorXd residuals;
+    Eigen::MatrixXd jacobian;
+};
+Linear linearise_pairs(const Chain& chain, const Pose& x, const Pose& y, const Scales& s);
+
+// Largest sigma of X with the noise floor: what the poses determine, whatever the noise.
 struct Determination {
-    Matrix12 covariance = Matrix12::Zero();
-    double worst_mm = 0, worst_rad = 0;  // sigma of X with the noise floor
+    double worst_mm = 0, worst_rad = 0;
 };
 Determination determination(const Chain& chain, const Pose& x, const Pose& y, const Scales& scales);
 

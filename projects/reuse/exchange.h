@@ -71,7 +71,8 @@ struct RecordingLook {
         std::string name, spot_id;
         std::string understood;  // or why it cannot be read
         bool readable = false, image = false;
-        ProfileScale scale;
+        ProfileScale scale;  // of the heights that are some
+        Text no_returns;     // what stands for none; empty: nothing
         std::vector<Eigen::Vector2d> first;        // points
         int width = 0, height = 0, bit_depth = 0;  // of an image
         std::optional<ChannelChoice> channel;

@@ -11,6 +11,7 @@
 #include "devices/replay/recording.h"
 #include "projects/measure/measure.h"
 #include "projects/reuse/exchange.h"
+#include "projects/reuse/recorded_heights.h"
 
 namespace seamwright {
 namespace {
@@ -82,7 +83,7 @@ Expected<void> check_calibration(const FolderImport& options, bool images, const
 // The units of a frame's profile, unless the person named one.
 Expected<void> check_units(const FolderImport& options, const Frame& frame, const fs::path& file) {
     if (!options.layout.profile.unit.empty() || frame.profile.size() == 0) return {};
-    auto ok = check_profile_millimetres(frame.profile, file.string());
+    auto ok = check_profile_millimetres(recorded_heights(frame.profile), file.string());
     if (!ok) ok.error().mend = Text("{}, or say what they are in with --unit", ok.error().mend);
     return ok;
 }
@@ -182,6 +183,7 @@ class FolderImporter {
         Frame first;
         SEAM_OK(read_recorded(frames_.front(), layout_, 0, first));
         SEAM_OK(check_units(options_, first, frames_.front().file));
+        tell_of(first);
         const bool images = frames_.front().image;
         SEAM_OK(check_calibration(options_, images, first));
         Calibration calibration;
@@ -214,6 +216,20 @@ class FolderImporter {
         }
         result_.project.calibrations = {std::move(calibration)};
         return {};
+    }
+
+    // How the profiles were read, by the first.
+    void tell_of(const Frame& first) {
+        const RecordedFrame& frame = frames_.front();
+        if (frame.image || first.profile.size() == 0) return;
+        const std::string name = frame.file.filename().string();
+        if (!frame.profile)
+            if (const auto read = read_profiles(frame.file, layout_.profile))
+                result_.understood.push_back(name + ": " + read->understood);
+        if (const auto codes = find_no_return_codes(first.profile); !codes.empty())
+            result_.notes.push_back(Text("{}: {}", name, no_return_sentence(codes)));
+        std::set<std::string> told;
+        std::erase_if(result_.understood, [&](const std::string& line) { return !told.insert(line).second; });
     }
 
     Expected<void> take_spots() {

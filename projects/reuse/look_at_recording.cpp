@@ -1,6 +1,7 @@
 #include "devices/exchange/image_file.h"
 #include "devices/replay/recording.h"
 #include "projects/reuse/exchange.h"
+#include "projects/reuse/recorded_heights.h"
 
 namespace seamwright {
 namespace {
@@ -32,7 +33,9 @@ RecordingLook::File look_at(const RecordedFrame& recorded, const RecordingLayout
         file.understood = "one profile of " + file.name;
     else if (auto read = read_profiles(recorded.file, layout.profile))
         file.understood = read->understood;
-    file.scale = profile_scale(frame.profile);
+    if (const auto codes = find_no_return_codes(frame.profile); !codes.empty())
+        file.no_returns = no_return_sentence(codes);
+    file.scale = profile_scale(recorded_heights(frame.profile));
     for (std::size_t i = 0; i < frame.profile.size() && file.first.size() < kFirstPoints; ++i)
         file.first.emplace_back(frame.profile.x_mm[i], frame.profile.z_mm[i]);
     return file;

@@ -314,6 +314,24 @@ TEST_F(Import, LookSaysWhatWasUnderstood) {
     EXPECT_FALSE(std::filesystem::exists(folder / "car.seam"));
 }
 
+TEST_F(Import, WhatStandsForNoReturnIsNoHeight) {
+    record(
+        [](const auto& p) {
+            std::string text = "X;Z\n" + rows_of(p, ";");
+            for (int i = 1; i < 40; ++i) text += std::to_string(50 + i) + ";-9999\n";
+            return text;
+        },
+        ".csv");
+    poses("poses.csv", pose_rows("name,x,y,z,w,p,r\n", ",", true, xyz_wpr));
+    const json look = answer({"import", "--look", "--from", (folder / "car").string()}, 0);
+    EXPECT_EQ(look["files"][0]["suspected_unit"], "") << "the height -9999 is no contour of ten metres";
+    EXPECT_THAT(look["files"][0]["no_returns"].dump(), HasSubstr("39 points stand at z = -9999"));
+    const json made = answer(edge_job("n", {}), 0);
+    EXPECT_THAT(made["notes"].dump(), HasSubstr("taken for lines without return"));
+    EXPECT_THAT(made["understood"].dump(), HasSubstr("semicolons"));
+    expect_motion("n", 0.1);
+}
+
 TEST_F(Import, TheFirstErrorNamesFileAndLine) {
     record([](const auto& p) { return "x;z\n" + rows_of(p, ";") + "1.5;abc\n"; }, ".csv");
     poses("poses.csv", pose_rows("name,x,y,z,w,p,r\n", ",", true, xyz_wpr));

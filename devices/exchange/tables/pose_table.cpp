@@ -116,8 +116,9 @@ Expected<void> check_width(PoseForm& form, std::size_t width, const std::string&
             return input_error("six numbers are a pose in several ways", where,
                                "say which with --pose-convention kuka-abc, fanuc-wpr, rpy, ur-rotvec or zyz");
         } else if (width == 7) {
-            return input_error("a quaternion begins or ends with w", where,
-                               "say which with --pose-convention quat-wxyz or quat-xyzw");
+            return input_error("seven numbers are a frame's number and six, or a position and a quaternion",
+                               where,
+                               "say which with --pose-convention: one of the six, or quat-wxyz or quat-xyzw");
         }
     }
     const bool fits = form.convention == "matrix"           ? width == 12 || width == 16

@@ -136,6 +136,21 @@ Expected<PointRoles> find_columns(const PointTable& table, const ProfileLayout& 
     return found;
 }
 
+// The header of our own form and nothing beside it: a number of the profile makes several of one file.
+bool is_own_form(std::string_view bytes) {
+    std::string_view first = bytes.substr(0, std::min<std::size_t>(bytes.find('\n'), 256));
+    if (first.starts_with("\xEF\xBB\xBF")) first.remove_prefix(3);
+    bool x = false, z = false;
+    for (const auto& field : text_fields(first, ',')) {
+        const std::string_view name = csv::trimmed(field);
+        x = x || name == "x_mm";
+        z = z || name == "z_mm";
+        const std::string plain = column_name(name).name;
+        if (names_profile(plain) || names_counter(plain)) return false;
+    }
+    return x && z;
+}
+
 // Millimetres of one unit of a column: as the person says, else as its name says, else 1.
 double factor(const PointTable& table, std::size_t column, const ProfileLayout& layout, bool& asked) {
     if (const auto said = mm_of_unit(layout.unit)) return *said;
@@ -199,11 +214,7 @@ Expected<ReadProfiles> parse_profiles(std::string_view bytes, const std::string&
     ReadProfiles result;
     result.unit_asked = layout.unit.empty();
     // Our own form keeps its strict reader.
-    std::string_view first = bytes.substr(0, std::min<std::size_t>(bytes.find('\n'), 256));
-    if (first.starts_with("\xEF\xBB\xBF")) first.remove_prefix(3);
-    if (layout.columns.empty() && first.find("x_mm") != first.npos && first.find("z_mm") != first.npos &&
-        first.find("profile_index") == first.npos && first.find(';') == first.npos &&
-        first.find('\t') == first.npos) {
+    if (layout.columns.empty() && is_own_form(bytes)) {
         SEAM_TRY(auto profile, parse_profile_csv(bytes, where));
         erase_no_returns(profile, layout.invalid);
         if (std::none_of(profile.z_mm.begin(), profile.z_mm.end(),

@@ -105,17 +105,18 @@ TEST(ProfileLayout, UnitsOfTheHeaderAndOfThePerson) {
 }
 
 TEST(ProfileLayout, SeveralProfilesOfOneFile) {
-    std::string indexed = "Profile;X;Z\n", blocks, cloud;
+    std::string indexed = "Profile;X;Z\n", own = "profile,x_mm,z_mm\n", blocks, cloud;
     for (int p = 3; p < 7; ++p) {
         for (int i = 0; i < 60; ++i) {
             indexed += std::to_string(p) + ";" + number(x_of(i), '.') + ";" + number(z_of(i) + p, '.') + "\n";
+            own += std::to_string(p) + "," + number(x_of(i), '.') + "," + number(z_of(i) + p, '.') + "\n";
             blocks += number(x_of(i), '.') + " " + number(z_of(i) + p, '.') + "\n";
             cloud +=
                 number(x_of(i), '.') + " " + number(0.5 * p, '.') + " " + number(z_of(i) + p, '.') + "\n";
         }
         blocks += "\n# next\n";
     }
-    for (const std::string& text : {indexed, blocks, cloud}) {
+    for (const std::string& text : {indexed, own, blocks, cloud}) {
         const auto read = parse_profiles(text, "pass.txt", {});
         ASSERT_TRUE(read) << read.error().sentence();
         ASSERT_EQ(read->profiles.size(), 4u) << read->understood;

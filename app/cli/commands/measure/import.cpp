@@ -211,10 +211,12 @@ Expected<Answer> look(const ImportArguments& a) {
                           {"z", {number_or_null(s.z_low), number_or_null(s.z_high)}},
                           {"pitch", number_or_null(s.pitch)},
                           {"noise", number_or_null(s.noise)},
-                          {"suspected_unit", s.suspected}});
+                          {"suspected_unit", s.suspected},
+                          {"no_returns", f.no_returns}});
             answer.text += fmt::format(
                 "\n  {} points, x {:.4g} to {:.4g}, z {:.4g} to {:.4g}, pitch {:.3g}, noise {:.2g} mm\n",
                 s.points, s.x_low, s.x_high, s.z_low, s.z_high, s.pitch, s.noise);
+            if (!f.no_returns.empty()) answer.text += "  " + f.no_returns.english() + "\n";
             if (!s.suspected.empty()) {
                 if (layout.profile.unit.empty()) sound = false;
                 answer.text += "  " + s.why.english() + ", which looks like " + s.suspected +

@@ -99,17 +99,21 @@ class Corners final : public ceres::CostFunction {
     Pose camera_from_frame_;
 };
 
+// Where camera and plate say that the flange stood, against what the robot said, in the flange's frame: there a
+// robot's place and turn err by themselves, while at the plate a turn has moved it by its lever.
 struct Robot {
     Pose base_from_flange;
     double per_mm, per_rad;
     template <class T>
     bool operator()(const T* x, const T* z, const T* c, T* residual) const {
-        const Vector3<T> in_flange = turn_of(x) * shift_of(c) + shift_of(x);
+        const Eigen::Quaternion<T> from_base(
+            Eigen::Quaterniond(base_from_flange.linear()).conjugate().cast<T>());
+        const Vector3<T> in_plate =
+            turn_of(c).conjugate() * Vector3<T>(-(turn_of(x).conjugate() * shift_of(x)) - shift_of(c));
         const Vector3<T> mm =
-            base_from_flange.linear() * in_flange + base_from_flange.translation() - shift_of(z);
-        const Vector3<T> rad =
-            rotation_vector(Eigen::Quaternion<T>(Eigen::Quaterniond(base_from_flange.linear()).cast<T>() *
-                                                 turn_of(x) * turn_of(c) * turn_of(z).conjugate()));
+            from_base * Vector3<T>(turn_of(z) * in_plate + shift_of(z) - base_from_flange.translation());
+        const Vector3<T> rad = rotation_vector(
+            Eigen::Quaternion<T>(from_base * turn_of(z) * turn_of(c).conjugate() * turn_of(x).conjugate()));
         for (int i = 0; i < 3; ++i) {
             residual[i] = mm[i] * per_mm;
             residual[3 + i] = rad[i] * per_rad;

@@ -38,8 +38,8 @@ struct KnownCamerasFit {
     Matrix6 information = Matrix6::Zero();
 };
 KnownCamerasFit solve_pose(std::vector<Sights> sights, Pose& world_from_object);
-// flange_from_camera, base_from_target, camera_from_target: base_from_flange * X * C against Z, (mm, rad) over
-// their sigmas.
+// flange_from_camera, base_from_target, camera_from_target: Z * C^-1 * X^-1 against base_from_flange, in the flange's
+// frame, (mm, rad) over their sigmas.
 ceres::CostFunction* robot(const Pose& base_from_flange, double sigma_mm, double sigma_rad);
 // Intrinsics, shape, plane, camera_from_target: distance of a stripe point of the plate from the plane over sigma.
 ceres::CostFunction* stripe(const Eigen::Vector2d& pixel, const PlateShape& place, bool on_bow, int width,

@@ -167,9 +167,10 @@ class Bundle {
             fit.corners += bent.pixel.size();
             fit.corner_cost += squares_px2(k_, pose, bent);
             if (robot_ && seen_.base_from_flange[i]) {
-                const Pose found = *seen_.base_from_flange[i] * *state_.flange_from_camera * pose;
-                robot_mm2 += std::pow(distance_mm(found, *state_.base_from_target), 2);
-                robot_rad2 += std::pow(angle_rad(found, *state_.base_from_target), 2);
+                const Pose found =
+                    *state_.base_from_target * pose.inverse() * state_.flange_from_camera->inverse();
+                robot_mm2 += std::pow(distance_mm(found, *seen_.base_from_flange[i]), 2);
+                robot_rad2 += std::pow(angle_rad(found, *seen_.base_from_flange[i]), 2);
                 ++robot_views;
             }
             if (!has_stripe(i)) continue;

@@ -10,6 +10,7 @@
 #include "core/calibration/camera/corner_noise.h"
 #include "core/calibration/pose/hand_eye.h"
 #include "core/calibration/pose_set.h"
+#include "core/calibration/statistics.h"
 #include "core/calibration/stripe/stripe_line.h"
 #include "core/calibration/stripe/stripe_plane.h"
 #include "core/geometry/decompositions.h"
@@ -365,14 +366,23 @@ class Solver {
         bundle_.shape = model_.shape;
     }
 
+    double robot_views() const {
+        double n = 0;
+        for (const auto& b : bundle_.base_from_flange) n += b.has_value();
+        return n;
+    }
+    // The robot's sigmas come from few poses: value +- 1.96 sigma of what rests on them holds 95 %.
+    double robot_student() const {
+        return student_quantile(0.975, std::max(3.0, 3 * robot_views() - 6)) / normal_quantile(0.975);
+    }
+
     // Sigmas from the residuals, within what robots and corners can be.
     void estimate_sigmas(const PlateBundleFit& fit) {
         const double free = 2.0 * static_cast<double>(fit.corners) - 6.0 * static_cast<double>(count()) -
                             static_cast<double>(fit.normal.gg.rows());
         bundle_.corner_sigma_px = std::clamp(std::sqrt(fit.corner_cost / std::max(free, 10.0)), 0.01, 3.0);
         if (!has_robot()) return;
-        double n = 0;
-        for (const auto& b : bundle_.base_from_flange) n += b.has_value();
+        const double n = robot_views();
         const double left = std::sqrt(3 * n / std::max(3 * n - 6, 3.0));
         bundle_.robot_sigma_mm = std::clamp(left * fit.robot_rms_mm / std::sqrt(3.0), 0.05, 5.0);
         bundle_.robot_sigma_rad =
@@ -557,6 +567,7 @@ class Solver {
             result_.target_spread_mm = std::sqrt(result_.target_spread_mm);
             if (fit_.covariance.size() && fit_.hand_eye_at >= 0)
                 result_.flange_from_camera_covariance =
+                    robot_student() * robot_student() *
                     fit_.covariance.block<6, 6>(fit_.hand_eye_at, fit_.hand_eye_at);
         }
     }
@@ -590,6 +601,7 @@ class Solver {
                                          units[static_cast<std::size_t>(i)], 0});
         select.topLeftCorner(9, n_k) = fit_.basis;
         Eigen::Index row = 9;
+        std::pair<Eigen::Index, Eigen::Index> hand_eye_rows{0, 0};
         const auto add = [&](const char* name, double value, const char* unit, Eigen::Index column,
                              double scale = 1) {
             report.parameters.push_back({name, value * scale, unit, 0});
@@ -615,6 +627,7 @@ class Solver {
                 add(t[static_cast<std::size_t>(i)], x.translation()(i), "mm", fit_.hand_eye_at + i);
             for (Eigen::Index i = 0; i < 3; ++i)
                 add(r[static_cast<std::size_t>(i)], w(i), "deg", fit_.hand_eye_at + 3 + i, deg_from_rad(1));
+            hand_eye_rows = {row - 6, row};
         }
         if (fit_.plane_at >= 0) {
             add("laser_plane.tilt_1", 0, "deg", fit_.plane_at, deg_from_rad(1));
@@ -622,7 +635,11 @@ class Solver {
             add("laser_plane.distance", result_.plane_distance_mm, "mm", fit_.plane_at + 2);
         }
         if (fit_.covariance.size()) {
-            report.covariance = select * fit_.covariance * select.transpose();
+            Eigen::VectorXd times = Eigen::VectorXd::Ones(total);
+            for (Eigen::Index i = hand_eye_rows.first; i < hand_eye_rows.second; ++i)
+                times(i) = robot_student();
+            report.covariance =
+                times.asDiagonal() * select * fit_.covariance * select.transpose() * times.asDiagonal();
             finish_statistics(report);
         }
         for (const auto& f : result_.frames) {

@@ -8,7 +8,7 @@
 // is found by consensus of whole frames first: a frame whose stripe contradicts the others (the laser was
 // touched, the plate was lifted at the stripe) is named and left out, never averaged in.
 //
-// Noise model: corners independent, one sigma in px; robot poses one sigma in mm and in rad; stripe rows 0.2
+// Noise model: corners independent, one sigma in px; robot poses one sigma in mm and in rad, at the flange; stripe rows 0.2
 // mm with Huber's weight. All three sigmas are estimated from the residuals (the last is fixed: rows of a
 // frame are not independent).
 //

@@ -6,6 +6,7 @@
 
 #include "core/calibration/statistics.h"
 #include "core/geometry/decompositions.h"
+#include "core/numbers.h"
 
 namespace seamwright::hand_eye {
 namespace {
@@ -183,8 +184,7 @@ class Pairs {
                 slope(static_cast<Eigen::Index>(k)) = cover_.col(n).dot(p[k] * cover_.col(n));
             const double scatter = slope.dot(unsure * slope);
             const double freedom = 2 * std::pow(cover_(n, n), 2) / std::max(scatter, 1e-300);
-            student(n) =
-                student_quantile(0.975, std::clamp(freedom, kFewestFreedom, 1e6)) / normal_quantile(0.975);
+            student(n) = student_quantile(0.975, std::clamp(freedom, kFewestFreedom, 1e6)) / kNormal95;
         }
         return student.asDiagonal() * adjusted * student.asDiagonal();
     }

@@ -15,6 +15,7 @@
 #include "core/calibration/stripe/stripe_plane.h"
 #include "core/geometry/decompositions.h"
 #include "core/median.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
@@ -373,7 +374,7 @@ class Solver {
     }
     // The robot's sigmas come from few poses: value +- 1.96 sigma of what rests on them holds 95 %.
     double robot_student() const {
-        return student_quantile(0.975, std::max(3.0, 3 * robot_views() - 6)) / normal_quantile(0.975);
+        return student_quantile(0.975, std::max(3.0, 3 * robot_views() - 6)) / kNormal95;
     }
 
     // Sigmas from the residuals, within what robots and corners can be.

@@ -243,7 +243,7 @@ class Fit {
         r = refine(levels_.fine, surface_, r.base_from_part,
                    {std::max(4 * r.gate_mm, floor_), floor_, 60, facing_});
         system_ = r.system;
-        out_.base_from_part = r.base_from_part;
+        rigid_ = out_.base_from_part = r.base_from_part;
         out_.gate_mm = r.gate_mm;
         return true;
     }
@@ -294,10 +294,13 @@ class Fit {
     }
 
     bool sure() {
+        // The points that lie on the part as the rigid fit has it: with a bent part its own place leaves them off it.
+        const Cloud seen = within_gate(levels_.fine);
+        double moved_mm = 0;
         for (int round = 0; round < 2; ++round) {
             if (stopped(options_)) return refuse(FitStatus::cancelled, "cancelled");
             const auto residuals =
-                residuals_of(levels_.fine, surface_, out_.base_from_part, out_.gate_mm, facing_);
+                residuals_of(seen, surface_, out_.base_from_part, out_.gate_mm + moved_mm, facing_);
             const double scatter = local_noise_mm(residuals);
             // Of a raw point: thinning averaged over so many.
             const double averaged =
@@ -324,6 +327,8 @@ class Fit {
             out_.form_length_mm = s.length_mm;
             out_.base_from_part = retract(out_.base_from_part, to_tangent * s.motion);
             if (s.motion.norm() < 0.1) break;
+            moved_mm +=
+                4 * s.motion.norm();  // a rotation's entry is that at the spread; points lie farther out
         }
         const SymmetricEigen e = symmetric_eigen(motion_covariance_);
         Eigen::Index vague = 0;
@@ -332,9 +337,19 @@ class Fit {
         return vague == 0 || open(e.vectors.rightCols(vague));
     }
 
+    Cloud within_gate(const Cloud& cloud) const {
+        const std::vector<double> off =
+            distances(cloud, surface_, out_.base_from_part, 2 * out_.gate_mm, facing_);
+        std::vector<std::size_t> kept;
+        for (std::size_t i = 0; i < cloud.size(); ++i)
+            if (off[i] <= out_.gate_mm) kept.push_back(i);
+        return picked(cloud, kept);
+    }
+
+    // Rivals are refined without a bend, so it is the rigid fit that they are compared with.
     bool elsewhere(const Pose& pose) const {
         const double near = std::max(0.004 * size_, 5 * (out_.noise_mm + out_.form_mm));
-        if (corner_distance_mm(surface_, pose, out_.base_from_part) <= near) return false;
+        if (corner_distance_mm(surface_, pose, rigid_) <= near) return false;
         // What the stated covariance allows is no other place (chi^2 of 6 at 98 %).
         if (angle_rad(pose, out_.base_from_part) > 1) return true;
         const Vector6 d = difference(pose, out_.base_from_part);
@@ -364,8 +379,7 @@ class Fit {
         for (const Pose& pose : candidates) {
             if (!elsewhere(pose) || !within_start(pose, surface_, options_)) continue;
             // Of several that ended near one another the one that is nearest to being as good.
-            FitRival rival =
-                compare(levels_.judges, surface_, out_.base_from_part, pose, form, most, facing_);
+            FitRival rival = compare(levels_.judges, surface_, rigid_, pose, form, most, facing_);
             const auto known = std::find_if(out_.rivals.begin(), out_.rivals.end(), [&](const FitRival& r) {
                 return corner_distance_mm(surface_, r.base_from_part, pose) < 0.01 * size_;
             });
@@ -388,8 +402,8 @@ class Fit {
 
     // Of one judge: the points' noise as far as thinning left it.
     double local_judges_mm() const {
-        const double scatter = local_noise_mm(
-            residuals_of(levels_.judges, surface_, out_.base_from_part, out_.gate_mm, facing_));
+        const double scatter =
+            local_noise_mm(residuals_of(levels_.judges, surface_, rigid_, out_.gate_mm, facing_));
         return std::isfinite(scatter) ? scatter : 0;
     }
 
@@ -400,6 +414,7 @@ class Fit {
     Levels levels_;
     FitSystem system_;
     Matrix6 motion_covariance_ = Matrix6::Zero();
+    Pose rigid_ = Pose::Identity();  // before the form's model moved it
     std::vector<Pose> refined_;
     SurfaceFit out_;
 };

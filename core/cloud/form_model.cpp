@@ -112,9 +112,12 @@ void add_place_of_bend(const Full& second_moment, const FullVector& mean, const 
             places.push_back(a);
         }
     const Eigen::Matrix3d bends = second_moment.bottomRightCorner<kModes, kModes>();
+    // Bend and twist have places of their own: nothing says that they lie together.
     for (const auto& a : places)
-        out.covariance +=
-            (a - average) * bends * (a - average).transpose() / static_cast<double>(places.size());
+        for (Eigen::Index k = 0; k < kModes; ++k) {
+            const Vector6 off = a.col(k) - average.col(k);
+            out.covariance += bends(k, k) * off * off.transpose() / static_cast<double>(places.size());
+        }
     // r = A motion + modes: a bend about elsewhere puts its line into the modes, and takes it from the motion.
     const Eigen::Matrix<double, 6, kModes> shift = average;
     const Eigen::Matrix<double, kUnknowns, kUnknowns> central = second_moment - mean * mean.transpose();
@@ -140,8 +143,12 @@ FormSolution solve_with_form(const std::vector<FormNode>& nodes, const PlateAxes
         nearest.push_back(d);
     }
     const double shortest = std::clamp(median(nearest) / 2, 1e-4 * size_mm, 0.2 * size_mm);
-    const double rms =
-        std::max(1e-6, std::sqrt(m.residuals.squaredNorm() / static_cast<double>(nodes.size())));
+    // What a rigid motion leaves over is form and noise: where the nodes were taken does not count.
+    const Eigen::MatrixXd rigid = m.rows.leftCols<6>();
+    const Matrix6 normal = rigid.transpose() * rigid + 1e-9 * Matrix6::Identity();
+    const Vector6 motion = normal.ldlt().solve(Vector6(rigid.transpose() * m.residuals));
+    const double rms = std::max(
+        1e-6, std::sqrt((m.residuals - rigid * motion).squaredNorm() / static_cast<double>(nodes.size())));
     const std::vector<double> bends{0.01 * rms, 0.3 * rms, 1 * rms, 3 * rms, 10 * rms, 30 * rms};
     std::vector<Candidate> all;
     solve_field(m, 0, 1, bends, all);

@@ -13,7 +13,8 @@
 //     e3 (q1 u^2 / 2 + q2 u v + q3 v^2 / 2),    u, v = -1 .. 1 along the part's longer axes, e3 along its thinnest,
 // q normal about 0 with the standard deviation t. About which place of the part it is bent is not to be seen in a scan: a
 // door bent about its hinges stands otherwise than one bent about its middle. That place is taken to be anywhere over
-// the part and somewhat beyond its ends, alike; the answer is the pose of which the bend's mean over the part is zero, and its covariance holds what the
+// the part and somewhat beyond its ends, alike, and for each mode by itself; the answer is the pose of which the bend's
+// mean over the part is zero, and its covariance holds what the
 // other places would make of it.
 //
 // s, L and t are not known. Each triple of a grid, s from 0 to ten times the residuals, L from the nodes' distance to the

@@ -1,7 +1,7 @@
 // The stated covariance against the truth on a bent and twisted part of which 40 % are seen: 200 drawn parts and poses.
 //
-// What is asked here is that no less is inside the stated region than it says; it is wider than it need be (mean chi^2
-// about half of what an exact one would have), and the figures are printed.
+// What is asked here is that no less is inside the stated region than it says, and that hardly any is refused; the figures
+// are printed.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -74,7 +74,7 @@ DoorTrials door_trials(int count, std::uint64_t seed, double seen) {
 
 TEST(FitDoorTrials, OfABentAndTwistedSheetNoLessIsInsideTheStatedRegionThanItSays) {
     const DoorTrials t = door_trials(200, 5000, 0.4);
-    EXPECT_GE(t.ok, 100);
+    EXPECT_GE(t.ok, 180);
     EXPECT_GE(t.inside, 0.93 * t.ok);
 }
 

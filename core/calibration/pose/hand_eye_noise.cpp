@@ -25,9 +25,9 @@ constexpr double kPriorLog = 3;  // sigma of a variance's logarithm, before the 
 constexpr double kFewestFreedom = 3;
 
 // All in units of the isotropic scales.
-class Pairs {
+class PairNoise {
   public:
-    Pairs(const Chain& chain, bool robot_outside, const Scales& scales)
+    PairNoise(const Chain& chain, bool robot_outside, const Scales& scales)
         : chain_(chain), robot_outside_(robot_outside), scales_(scales) {
         const std::size_t kinds = chain.used_count() < kFewestForFive ? 2 : 5;
         variance_.assign(kinds, 1);
@@ -203,7 +203,7 @@ class Pairs {
 }  // namespace
 
 Weighed weigh(const Chain& chain, bool robot_outside, const Pose& x, const Pose& y, const Scales& scales) {
-    return Pairs(chain, robot_outside, scales).run(x, y);
+    return PairNoise(chain, robot_outside, scales).run(x, y);
 }
 
 }  // namespace seamwright::hand_eye

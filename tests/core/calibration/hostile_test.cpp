@@ -94,8 +94,9 @@ TEST_F(HostileData, ObjectsOfSeveralCameras) {
             EXPECT_TRUE(r->world_from_object.matrix().allFinite());
             expect_numbers(r->report);
         }
-        if (const auto r = intersect(cameras[0], cameras[1], pairs, {}))
+        if (const auto r = intersect(cameras[0], cameras[1], pairs, {})) {
             for (const StereoPoint& p : r->points) EXPECT_TRUE(p.world_mm.allFinite());
+        }
     }
 }
 

@@ -193,7 +193,9 @@ TEST(Users, WrongPasswordsAreWaitedForByAllProgramsTogether) {
     EXPECT_THAT(sentence(other->sign_in("ada", kWord)), HasSubstr("try again in"));
     EXPECT_THAT(sentence(other->sign_in("nobody", kWord)), HasSubstr("user or password is wrong"));
     int wrong = 0;
-    for (const ChainEntry& e : *file.chain()) wrong += e.kind == "wrong password" && e.subject == "ada";
+    const auto chain = file.chain();
+    ASSERT_TRUE(chain);
+    for (const ChainEntry& e : *chain) wrong += e.kind == "wrong password" && e.subject == "ada";
     EXPECT_EQ(wrong, 3);
 }
 

@@ -70,13 +70,12 @@ struct EndsInWindow {
     }
 
     const Sheet* only(Feature& feature) const {
-        const Sheet *open = nullptr, *outside = nullptr, *any = nullptr, *covered = nullptr;
+        const Sheet *open = nullptr, *outside = nullptr, *any = nullptr;
         int ends = 0;
         for (const Sheet& s : sheets.sheets()) {
             if (!counts(s)) continue;
             if (!any || reach(s) > reach(*any)) any = &s;
             if (how(s) == SheetEnd::open) open = &s, ++ends;
-            if (how(s) == SheetEnd::covered) covered = &s;
             if (how(s) == SheetEnd::field && (!outside || reach(s) > reach(*outside))) outside = &s;
         }
         if (ends > 1) {
@@ -91,17 +90,6 @@ struct EndsInWindow {
                 "by the "
                 "window or by the setting segment",
                 ambiguous(feature));
-            return nullptr;
-        }
-        if (open && covered) {
-            feature.message = Text(
-                "a contour ends on that side, {}, and another one at x = {:.2f} mm, unless it runs under the "
-                "higher "
-                "one there, which depends on where the sensor is; say which is meant by the window or by the "
-                "setting "
-                "segment",
-                ambiguous(feature), place(*covered).x());
-            feature.rivals_mm.push_back(place(*covered));
             return nullptr;
         }
         return open ? open : any;

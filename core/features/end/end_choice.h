@@ -31,8 +31,7 @@ struct ChosenEnd {
 // nullopt with status, message and rivals set in `feature`:
 //     no_points   no sheet with minimum_points in the window
 //     not_found   the meant sheet ends at the window's or the field's rim, or (`only`) under a higher one
-//     ambiguous   `only`: more than one end, or one besides a sheet that leaves the field farther out, or besides one
-//                 that runs under a higher one: to a sensor that looks along -z that is the upper one's end;
+//     ambiguous   `only`: more than one end, or one besides a sheet that leaves the field farther out;
 //                 longest: the next is nearly as long (a tenth); highest, lowest: the next is as high within
 //                 three sigma of the noise
 std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& rule, Feature& feature);

@@ -31,7 +31,7 @@ class AcceptWay : public testing::Test {
         studio.reset();
         std::filesystem::remove_all(folder);
     }
-    Person begin(const QString& language, QSize size = {1280, 800}) {
+    DeskPerson begin(const QString& language, QSize size = {1280, 800}) {
         StudioOptions o;
         o.language = language;
         o.theme = "light";
@@ -40,13 +40,13 @@ class AcceptWay : public testing::Test {
         studio = std::make_unique<Studio>(*qobject_cast<QApplication*>(QApplication::instance()), o);
         studio->window().resize(size);
         studio->window().show();
-        Person me(studio->window());
-        EXPECT_TRUE(Person::wait([&] { return desk().station().connected && !desk().worker().busy(); }));
+        DeskPerson me(studio->window());
+        EXPECT_TRUE(DeskPerson::wait([&] { return desk().station().connected && !desk().worker().busy(); }));
         me.step(7);
         return me;
     }
     Desk& desk() { return studio->desk(); }
-    static void choose(const Person& me, int row) {
+    static void choose(const DeskPerson& me, int row) {
         auto* list = me.find<QTableWidget>("studies");
         ASSERT_TRUE(list);
         me.look_at(list);
@@ -54,23 +54,23 @@ class AcceptWay : public testing::Test {
                           list->visualItemRect(list->item(row, 0)).center());
         QApplication::processEvents();
     }
-    static QString state(const Person& me, int row) {
+    static QString state(const DeskPerson& me, int row) {
         auto* list = me.find<QTableWidget>("studies");
         return list && list->item(row, 1) ? list->item(row, 1)->text() : QString();
     }
-    static void type(const Person& me, const QString& spin, int value) {
+    static void type(const DeskPerson& me, const QString& spin, int value) {
         if (auto* box = me.find<QSpinBox>(spin))
             me.write(box->findChild<QLineEdit*>(), QString::number(value));
     }
     bool idle() {
-        return Person::wait([&] { return !desk().worker().busy(); });
+        return DeskPerson::wait([&] { return !desk().worker().busy(); });
     }
 };
 
 constexpr int kRobot = 0, kTrigger = 1, kType1 = 3, kType3 = 4;
 
 TEST_F(AcceptWay, FromTheToleranceToTheReport) {
-    const Person me = begin("en");
+    const DeskPerson me = begin("en");
     QStringList troubles;
     QObject::connect(&desk(), &Desk::trouble, &desk(), [&](const QString& why) { troubles << why; });
     EXPECT_EQ(me.text_of("accept_tolerance"), "The tolerance is not stated yet");
@@ -169,7 +169,7 @@ TEST_F(AcceptWay, FromTheToleranceToTheReport) {
 }
 
 TEST_F(AcceptWay, AKeptOffsetActsAndIsTakenBack) {
-    const Person me = begin("en");
+    const DeskPerson me = begin("en");
     Region region = desk().project().regions.front();
     KeptOffset kept;
     kept.version = 1;
@@ -199,7 +199,7 @@ TEST_F(AcceptWay, AKeptOffsetActsAndIsTakenBack) {
 
 // What they find are edits of the document; the runs before are of another process then.
 TEST_F(AcceptWay, RobotAndTriggerAreTakenAndGivenBack) {
-    const Person me = begin("en");
+    const DeskPerson me = begin("en");
     const auto covariance = [&] { return desk().project().robots.front().arrival_covariance; };
     ASSERT_TRUE(me.wait([&] { return state(me, kRobot) == "not begun"; }));
     choose(me, kRobot);
@@ -227,7 +227,7 @@ TEST_F(AcceptWay, RobotAndTriggerAreTakenAndGivenBack) {
 
 // Where the simulation does not put the parts in, the page asks.
 TEST_F(AcceptWay, APersonIsAskedForThePart) {
-    const Person me = begin("en");
+    const DeskPerson me = begin("en");
     auto* asks = me.window().findChild<QWidget*>("place_study_part");
     ASSERT_TRUE(asks);
     EXPECT_FALSE(asks->isVisible());
@@ -242,7 +242,7 @@ TEST_F(AcceptWay, APersonIsAskedForThePart) {
 TEST_F(AcceptWay, FitsBothScreensInBothLanguages) {
     for (const QString language : {"en", "de"})
         for (const QSize size : {QSize(1280, 800), QSize(1920, 1080)}) {
-            const Person me = begin(language, size);
+            const DeskPerson me = begin(language, size);
             ASSERT_TRUE(me.wait([&] { return !state(me, kType1).isEmpty(); }));
             EXPECT_EQ(state(me, kType1), language == "en" ? "not begun" : "nicht begonnen");
             auto* list = me.find<QTableWidget>("studies");

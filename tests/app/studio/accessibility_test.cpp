@@ -41,7 +41,7 @@ class Accessibility : public testing::Test {
         o.data = QString::fromStdString(folder.string());
         studio = std::make_unique<Studio>(*qApp, o);
         studio->window().resize(1280, 800);
-        ASSERT_TRUE(Person::wait([&] { return studio->desk().station().connected; }));
+        ASSERT_TRUE(DeskPerson::wait([&] { return studio->desk().station().connected; }));
     }
     void TearDown() override {
         studio.reset();
@@ -64,7 +64,7 @@ class Accessibility : public testing::Test {
     // Until every page has the length that its editors ask for.
     void settle() {
         QTest::qWait(100);
-        EXPECT_TRUE(Person::wait([&] {
+        EXPECT_TRUE(DeskPerson::wait([&] {
             QCoreApplication::sendPostedEvents();
             for (const auto* area : window().findChildren<QScrollArea*>())
                 if (area->isVisible() && area->widget() && area->widget()->layout() &&
@@ -89,7 +89,7 @@ class Accessibility : public testing::Test {
         }
     }
     void measure_once() {
-        Person me(window());
+        DeskPerson me(window());
         me.step(8);
         me.click("measure");
         ASSERT_TRUE(me.wait([&] { return studio->desk().runs()->size() == 1; }));
@@ -97,7 +97,7 @@ class Accessibility : public testing::Test {
     }
     // A pass that drifts: the sensor is turned about its own Z by 1.5 degrees first.
     void record_pass() {
-        Person me(window());
+        DeskPerson me(window());
         Desk& desk = studio->desk();
         Spot turned = desk.project().spots.front();
         turned.base_from_flange =
@@ -261,7 +261,7 @@ TEST_F(Accessibility, NothingIsCutOffAt1280By800) {
             "again");
         window().show_step(Step::teach);
         settle();
-        Person me(window());
+        DeskPerson me(window());
         auto* kind = me.find<QComboBox>("feature_kind");
         ASSERT_TRUE(kind);
         for (int i = 0; i < kind->count(); ++i) {

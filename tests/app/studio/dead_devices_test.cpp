@@ -29,7 +29,7 @@ class DeadDevices : public testing::Test {
         o.settings = QString::fromStdString((folder / "settings.ini").string());
         o.data = QString::fromStdString((folder / "").string());
         studio = std::make_unique<Studio>(*qApp, o);
-        me = std::make_unique<Person>(studio->window());
+        me = std::make_unique<DeskPerson>(studio->window());
         studio->window().resize(1280, 800);
         studio->window().show_step(Step::cell);
         me->click("connect");
@@ -64,7 +64,7 @@ class DeadDevices : public testing::Test {
     TemporaryFolder folder;
     std::optional<ServedCell> served;
     std::unique_ptr<Studio> studio;
-    std::unique_ptr<Person> me;
+    std::unique_ptr<DeskPerson> me;
 };
 
 TEST_F(DeadDevices, ASensorThatDiesIsNotShownAlive) {

@@ -76,7 +76,7 @@ class Guided : public testing::Test {
         o.data = QString::fromStdString(folder.string());
         return o;
     }
-    static void go_to_page(const Person& me, Desk& desk, const QString& method) {
+    static void go_to_page(const DeskPerson& me, Desk& desk, const QString& method) {
         if (!desk.station().connected) {
             me.step(1);
             me.click("connect");
@@ -85,12 +85,12 @@ class Guided : public testing::Test {
         me.step(2);
         me.click("begin_" + method);
     }
-    static int captures(const Person& me) {
+    static int captures(const DeskPerson& me) {
         auto* table = me.find<QTableWidget>("captures");
         return table ? table->rowCount() : -1;
     }
     // To the proposed pose, then the button, until the list has grown.
-    static void capture(const Person& me, Desk& desk, const QString& button = "calibration_capture") {
+    static void capture(const DeskPerson& me, Desk& desk, const QString& button = "calibration_capture") {
         const int before = captures(me);
         me.click("calibration_go");
         ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
@@ -99,11 +99,11 @@ class Guided : public testing::Test {
         ASSERT_TRUE(QTest::qWaitFor([&] { return captures(me) == before + 1; }, 3 * kPatienceMs))
             << window_text(me);
     }
-    static std::string window_text(const Person& me) {
+    static std::string window_text(const DeskPerson& me) {
         auto* said = me.window().findChild<QLabel*>("calibration_said");
         return said ? said->text().toStdString() : std::string();
     }
-    static bool solved(const Person& me, MainWindow& window) {
+    static bool solved(const DeskPerson& me, MainWindow& window) {
         return me.wait([&] {
             auto* cancel = window.findChild<QPushButton*>("calibration_cancel");
             return cancel && !cancel->isVisible() && me.text_of("calibration_verdict") != "not solved yet";
@@ -140,7 +140,7 @@ class Guided : public testing::Test {
         return worst;
     }
     // The tick box of a line, by keyboard.
-    static void press_space(const Person& me, QTableWidget* table, int row) {
+    static void press_space(const DeskPerson& me, QTableWidget* table, int row) {
         me.look_at(table);
         table->scrollToItem(table->item(row, 0));
         table->setCurrentCell(row, 0);
@@ -174,7 +174,7 @@ TEST_F(Guided, DISABLED_CapturesUntilKilled) {
     Studio studio(*qApp, options());
     studio.window().resize(1280, 800);
     studio.window().show();
-    Person me(studio.window());
+    DeskPerson me(studio.window());
     go_to_page(me, studio.desk(), std::getenv(kMethod));
     me.click("calibration_set_target");
     for (int i = 0; i < 100; ++i) {
@@ -192,7 +192,7 @@ TEST_F(Guided, SphereWithABadPoseAndAKillInBetween) {
     MainWindow& window = studio.window();
     window.resize(1280, 800);
     window.show();
-    Person me(window);
+    DeskPerson me(window);
     Desk& desk = studio.desk();  // looked at, never worked
     me.step(2);
     EXPECT_EQ(me.find<QPushButton>("begin_tcp-sphere")->text(), "Go on");
@@ -302,7 +302,7 @@ TEST_P(GuidedLive, FromTheFirstCaptureToTheStoredCalibration) {
     MainWindow& window = studio.window();
     window.resize(1280, 800);
     window.show();
-    Person me(window);
+    DeskPerson me(window);
     Desk& desk = studio.desk();
     me.step(2);
     EXPECT_EQ(me.find<QPushButton>(QString("begin_") + method)->text(), "Go on");
@@ -376,7 +376,7 @@ TEST_F(Guided, StaticOneShotOfAPlateFoundBefore) {
     Studio studio(*qApp, options());
     studio.window().resize(1280, 800);
     studio.window().show();
-    Person me(studio.window());
+    DeskPerson me(studio.window());
     Desk& desk = studio.desk();
     go_to_page(me, desk, "static");
     me.click("calibration_set_target");
@@ -430,7 +430,7 @@ TEST_F(Guided, EveryPageFitsTheScreenInGerman) {
     MainWindow& window = studio.window();
     window.resize(1280, 800);
     window.show();
-    Person me(window);
+    DeskPerson me(window);
     Desk& desk = studio.desk();
     for (const CalibrationMethod& method : calibration_methods()) {
         if (!method.guided) continue;
@@ -491,7 +491,7 @@ TEST_P(GuidedDrift, OnTheSimulatedCell) {
     Studio studio(*qApp, options());
     studio.window().resize(1280, 800);
     studio.window().show();
-    Person me(studio.window());
+    DeskPerson me(studio.window());
     go_to_page(me, studio.desk(), "drift");
     me.click("calibration_set_target");
     for (int i = 0; i < 4; ++i) {
@@ -574,7 +574,7 @@ class GuidedFile : public Guided, public testing::WithParamInterface<const char*
     }
     static constexpr double kBesideMm = 50;
     // Every sensor of the gripper at once: told before, stored and in use together, taken back together.
-    static void use_all_of_a_shot(const Person& me, MainWindow& window, Desk& desk) {
+    static void use_all_of_a_shot(const DeskPerson& me, MainWindow& window, Desk& desk) {
         auto* table = me.find<QTableWidget>("captures");
         EXPECT_TRUE(
             me.text_of("calibration_stands").contains("static-3 for sensor A, static-4 for sensor B."));
@@ -619,7 +619,7 @@ TEST_P(GuidedFile, FromItsFile) {
     MainWindow& window = studio.window();
     window.resize(1280, 800);
     window.show();
-    Person me(window);
+    DeskPerson me(window);
     Desk& desk = studio.desk();
     me.step(2);
     me.click("begin_" + QString::fromStdString(method));
@@ -679,7 +679,7 @@ TEST_F(Guided, BoardFromAFolderOfImages) {
         MainWindow& window = studio.window();
         window.resize(1280, 800);
         window.show();
-        Person me(window);
+        DeskPerson me(window);
         me.step(2);
         me.click("begin_stripe-camera");
         me.answer_file_dialog(QString::fromStdString(images.string()));

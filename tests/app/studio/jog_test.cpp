@@ -28,7 +28,7 @@ class Jogging : public testing::Test {
         o.settings = QString::fromStdString((folder / "settings.ini").string());
         o.data = QString::fromStdString((folder / "").string());
         studio = std::make_unique<Studio>(*qApp, o);
-        me = std::make_unique<Person>(studio->window());
+        me = std::make_unique<DeskPerson>(studio->window());
         studio->window().resize(1280, 800);
         QApplication::setActiveWindow(&studio->window());
         studio->window().show_step(Step::cell);
@@ -61,7 +61,7 @@ class Jogging : public testing::Test {
 
     TemporaryFolder folder;
     std::unique_ptr<Studio> studio;
-    std::unique_ptr<Person> me;
+    std::unique_ptr<DeskPerson> me;
 };
 
 TEST_F(Jogging, APressIsOneStepAlongTheChosenAxes) {

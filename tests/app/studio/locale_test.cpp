@@ -66,7 +66,7 @@ class GermanStudio : public testing::TestWithParam<std::string> {
 };
 
 TEST_P(GermanStudio, ReadsPoseAndFramesAndPushes) {
-    Person me(studio->window());
+    DeskPerson me(studio->window());
     Desk& desk = studio->desk();
     ASSERT_TRUE(desk.is_open());
     studio->window().resize(1280, 800);

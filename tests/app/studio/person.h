@@ -26,9 +26,9 @@ namespace seamwright {
 inline constexpr int kPatienceMs = 20000;
 
 // Hands and eyes: finds controls by the names they have on the screen's tree, waits as a person waits.
-class Person {
+class DeskPerson {
   public:
-    explicit Person(MainWindow& window) : window_(window) {}
+    explicit DeskPerson(MainWindow& window) : window_(window) {}
     MainWindow& window() const { return window_; }
 
     template <class T>

@@ -51,7 +51,7 @@ class Worker {
                          [&] { say(kill_message::runs, desk.runs().value().size()); });
         QObject::connect(&desk, &Desk::trouble, &desk,
                          [](const QString& text) { ADD_FAILURE() << text.toStdString(); });
-        Person me(studio.window());
+        DeskPerson me(studio.window());
         ASSERT_TRUE(me.wait([&] { return desk.station().connected; }));
         while (!testing::Test::HasFailure()) act(me, desk, studio.window());
     }
@@ -79,7 +79,7 @@ class Worker {
         ADD_FAILURE() << "the question has no such answer";
     }
 
-    void act(Person& me, Desk& desk, MainWindow& window) {
+    void act(DeskPerson& me, Desk& desk, MainWindow& window) {
         say(kill_message::begins);
         const int chosen = dice(20);
         if (chosen < 4) {
@@ -109,7 +109,7 @@ class Worker {
         QTest::qWait(dice(3) == 0 ? dice(150) : 0);
     }
 
-    void edit_spot(Person& me, Desk& desk, MainWindow& window) {
+    void edit_spot(DeskPerson& me, Desk& desk, MainWindow& window) {
         me.step(3);
         auto* tree = me.find<QTreeWidget>("spot_tree");
         ASSERT_TRUE(tree);

@@ -61,7 +61,7 @@ class WholeWay : public testing::Test {
 // contour stands still.
 class Teacher {
   public:
-    Teacher(Person& me, Desk& desk, const SimulatedCell& cell) : me_(me), desk_(desk), cell_(cell) {}
+    Teacher(DeskPerson& me, Desk& desk, const SimulatedCell& cell) : me_(me), desk_(desk), cell_(cell) {}
 
     void add(const DoorSpot& door, bool by_template) {
         me_.step(3);
@@ -170,7 +170,7 @@ class Teacher {
         ASSERT_TRUE(desk_.project().spots[k].curve);
     }
 
-    Person& me_;
+    DeskPerson& me_;
     Desk& desk_;
     const SimulatedCell& cell_;
 };
@@ -205,7 +205,7 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
         MainWindow& window = studio.window();
         window.resize(1280, 800);
         window.show();
-        Person me(window);
+        DeskPerson me(window);
         Desk& desk = studio.desk();  // looked at, never worked
         ASSERT_TRUE(me.wait([&] { return desk.station().connected; })) << "the demo's cell is there at once";
         me.picture("01_start");
@@ -451,7 +451,7 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
     Studio again(*qApp, options(file));
     again.window().resize(1280, 800);
     again.window().show();
-    Person me(again.window());
+    DeskPerson me(again.window());
     ASSERT_TRUE(me.wait([&] { return again.desk().station().connected; }));
     QTest::qWait(300);
     me.step(8);

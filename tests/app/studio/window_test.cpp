@@ -78,7 +78,7 @@ class Furniture : public testing::Test {
 };
 
 TEST_F(Furniture, ThePaletteRunsWhatIsTyped) {
-    Person me(window());
+    DeskPerson me(window());
     me.shortcut(Qt::Key_K);
     auto* palette = window().findChild<CommandPalette*>();
     ASSERT_TRUE(palette);
@@ -121,7 +121,7 @@ TEST_F(Furniture, ASecondStudioSaysThatTheProjectIsOpenInTheLanguageOfItsWindow)
 }
 
 TEST_F(Furniture, ASpotIsToldToStandStillAtTheTrigger) {
-    Person me(window());
+    DeskPerson me(window());
     me.step(3);
     ASSERT_FALSE(studio->desk().project().spots.at(0).stop_at_trigger);
     auto* box = me.find<QCheckBox>("spot_stop");
@@ -140,7 +140,7 @@ TEST_F(Furniture, ASpotFromTheDrawingIsConfirmedOnThePart) {
     Desk& desk = studio->desk();
     desk.selection().select_spot(desk.project().spots.at(0).id);
     const auto spot = [&]() -> const Spot& { return desk.project().spots.at(0); };
-    Person me(window());
+    DeskPerson me(window());
     me.step(3);
     ASSERT_GT(spot().reference_profile.size(), 0U);
     // As a proposal leaves it: drawn a little beside where the part is.
@@ -166,7 +166,7 @@ TEST_F(Furniture, ASpotFromTheDrawingIsConfirmedOnThePart) {
 TEST_F(Furniture, OfSeveralKindsOfPartsTheChosenOneIsMeasured) {
     start(true);
     Desk& desk = studio->desk();
-    Person me(window());
+    DeskPerson me(window());
     me.step(8);
     for (const auto* hidden : window().findChildren<QComboBox*>("part_type"))
         EXPECT_FALSE(hidden->isVisible()) << "a project of one kind of part";
@@ -205,7 +205,7 @@ TEST_F(Furniture, ViaPointsAreAddedWhereTheRobotStandsAndTakenOut) {
     Desk& desk = studio->desk();
     desk.selection().select_spot(desk.project().spots.at(1).id);
     const auto via = [&]() -> const std::vector<Pose>& { return desk.project().spots.at(1).via; };
-    Person me(window());
+    DeskPerson me(window());
     me.step(3);
     ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
     const auto stands = [&](const Pose& at) {
@@ -249,7 +249,7 @@ TEST_F(Furniture, WhatWasMeasuredAtAnotherPoseOrFeatureGoesWithTheEdit) {
     Desk& desk = studio->desk();
     const auto spot = [&]() -> const Spot& { return desk.project().spots.at(0); };
     desk.selection().select_spot(spot().id);
-    Person me(window());
+    DeskPerson me(window());
     me.step(3);
     ASSERT_GT(spot().reference_profile.size(), 0U);
 
@@ -285,7 +285,7 @@ TEST_F(Furniture, WhatWasMeasuredAtAnotherPoseOrFeatureGoesWithTheEdit) {
 TEST_F(Furniture, TheLightOfASpotIsFoundKeptUndoneAndTakenBack) {
     start(true);
     Desk& desk = studio->desk();
-    Person me(window());
+    DeskPerson me(window());
     ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
     desk.selection().select_spot(desk.project().spots.front().id);
     me.step(3);
@@ -346,14 +346,14 @@ TEST_F(Furniture, FilesAreDroppedIntoTheWindow) {
     std::ofstream(folder / "broken.seam") << "no project";
     ASSERT_TRUE(drop(path("broken.seam")));
     EXPECT_EQ(studio->desk().path().filename(), "one.seam") << "what cannot be opened changes nothing";
-    Person me(window());
+    DeskPerson me(window());
     EXPECT_FALSE(me.text_of("trouble_text").isEmpty());
 }
 
 TEST_F(Furniture, DocksFloatFillTheWindowAndAreRemembered) {
     auto* scene = dock("dock_scene");
     ASSERT_TRUE(scene);
-    Person me(window());
+    DeskPerson me(window());
     auto* loose = scene->titleBarWidget()->findChild<QPushButton*>("dock_float");
     ASSERT_TRUE(loose);
     QTest::mouseClick(loose, Qt::LeftButton);
@@ -377,7 +377,7 @@ TEST_F(Furniture, DocksFloatFillTheWindowAndAreRemembered) {
 
 TEST_F(Furniture, TheJitterWindowIsDraggedOnTheAlignmentPlot) {
     start(true);
-    Person me(window());
+    DeskPerson me(window());
     Desk& desk = studio->desk();
     ASSERT_TRUE(me.wait([&] { return desk.station().connected; }));
     me.step(4);
@@ -395,11 +395,11 @@ TEST_F(Furniture, TheJitterWindowIsDraggedOnTheAlignmentPlot) {
                       row->rect().center().y());
     };
     const double before = view->jitter_mm();
-    Person::drag(plot, at(before), at(before + 4));
+    DeskPerson::drag(plot, at(before), at(before + 4));
     ASSERT_GT(dragged.count(), 0);
     EXPECT_NEAR(view->jitter_mm(), before + 4, 0.3);
     const double wide = view->jitter_mm();
-    Person::drag(plot, at(-wide), at(-2));
+    DeskPerson::drag(plot, at(-wide), at(-2));
     EXPECT_NEAR(view->jitter_mm(), 2, 0.3) << "the other line moves it too: they are symmetric";
     // What is accepted then is what was dragged.
     ASSERT_EQ(me.text_of("align_verdict"), "FROZEN");
@@ -443,18 +443,18 @@ TEST_F(Furniture, ARegionOfInterestIsDraggedOnTheCameraImage) {
     const auto at = [&](int u, int v) {
         return surface->mapFrom(view, view->to_screen(QPointF(u, v))).toPoint();
     };
-    Person::drag(surface, at(40, 30), at(200, 120));
+    DeskPerson::drag(surface, at(40, 30), at(200, 120));
     EXPECT_EQ(dragged.count(), 0) << "without the tool a drag moves the picture";
     view->fit();
     view->set_region_tool(true);
-    Person::drag(surface, at(40, 30), at(200, 120));
+    DeskPerson::drag(surface, at(40, 30), at(200, 120));
     ASSERT_EQ(dragged.count(), 1);
     const QRect region = dragged[0][0].toRect();
     EXPECT_NEAR(region.left(), 40, 1);
     EXPECT_NEAR(region.top(), 30, 1);
     EXPECT_NEAR(region.right(), 200, 1);
     EXPECT_NEAR(region.bottom(), 120, 1);
-    Person me(window());
+    DeskPerson me(window());
     EXPECT_TRUE(me.text_of("trouble_text").contains("part of its image"))
         << "no sensor is connected that could";
 }

@@ -100,28 +100,6 @@ Expected<Digest> digest_of_events(Database& db, std::int64_t last) {
     return all.finish();
 }
 
-Expected<Digest> stored_captures_digest(Database& db, std::int64_t run) {
-    std::vector<Digest> captures, images;
-    const auto read = [&](const char* sql, const char* table, std::size_t numbers,
-                          std::vector<Digest>& into) -> Expected<void> {
-        SEAM_TRY(auto s, db.prepare(sql));
-        s.bind(1, run);
-        return for_each_row(s, [&](Statement& row) -> Expected<void> {
-            std::vector<std::int64_t> in_front(numbers);
-            for (std::size_t i = 0; i < numbers; ++i) in_front[i] = row.integer(static_cast<int>(i));
-            into.push_back(blob_row_digest(table, in_front, row.blob(static_cast<int>(numbers))));
-            return {};
-        });
-    };
-    SEAM_OK(read("SELECT run, chunk, captures, data FROM captures WHERE run = ? ORDER BY chunk", "captures",
-                 3, captures));
-    SEAM_OK(
-        read("SELECT run, capture, width, height, bit_depth, data FROM images WHERE run = ? ORDER BY "
-             "capture",
-             "images", 5, images));
-    return captures_digest(captures, images);
-}
-
 ChainEntry entry_of(Statement& row) {
     return {row.integer(0), row.text(1),      row.text(2), row.text(3),
             row.text(4),    hex(row.blob(5)), row.text(6), hex(row.blob(7))};
@@ -374,6 +352,28 @@ Digest captures_digest(std::span<const Digest> captures, std::span<const Digest>
     for (const auto& part : {captures, images})
         for (const Digest& digest : part) append_netstring(list, hex(digest));
     return sha256(list);
+}
+
+Expected<Digest> stored_captures_digest(Database& db, std::int64_t run) {
+    std::vector<Digest> captures, images;
+    const auto read = [&](const char* sql, const char* table, std::size_t numbers,
+                          std::vector<Digest>& into) -> Expected<void> {
+        SEAM_TRY(auto s, db.prepare(sql));
+        s.bind(1, run);
+        return for_each_row(s, [&](Statement& row) -> Expected<void> {
+            std::vector<std::int64_t> in_front(numbers);
+            for (std::size_t i = 0; i < numbers; ++i) in_front[i] = row.integer(static_cast<int>(i));
+            into.push_back(blob_row_digest(table, in_front, row.blob(static_cast<int>(numbers))));
+            return {};
+        });
+    };
+    SEAM_OK(read("SELECT run, chunk, captures, data FROM captures WHERE run = ? ORDER BY chunk", "captures",
+                 3, captures));
+    SEAM_OK(
+        read("SELECT run, capture, width, height, bit_depth, data FROM images WHERE run = ? ORDER BY "
+             "capture",
+             "images", 5, images));
+    return captures_digest(captures, images);
 }
 
 Expected<std::string> chain_identity(Database& db) {

@@ -65,6 +65,8 @@ Expected<Digest> run_digest(Database& db, std::int64_t number);
 Digest blob_row_digest(std::string_view table, std::span<const std::int64_t> numbers,
                        std::span<const std::byte> data);
 Digest captures_digest(std::span<const Digest> captures, std::span<const Digest> images);
+// Of the rows that are stored of a run.
+Expected<Digest> stored_captures_digest(Database& db, std::int64_t run);
 
 // The identity of the file: the hash of its first entry. Error (file): the chain is gone.
 Expected<std::string> chain_identity(Database& db);

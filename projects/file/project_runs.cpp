@@ -329,6 +329,12 @@ Expected<void> ProjectFile::append_measured(const RunRecord& run, StoredMeasurem
     SEAM_TRY(auto transaction, Transaction::begin(impl_->db));
     SEAM_OK(insert_captures(impl_->db, run.captures, run.number, then));
     SEAM_OK(insert_spots(impl_->db, run, run.number, measured));
+    // Of a judged run the raw data had their entry; a panel is measured again once it has been moved.
+    if (!run.finished_utc.empty()) {
+        SEAM_TRY(const auto digest, stored_captures_digest(impl_->db, run.number));
+        SEAM_OK(
+            append_chain(impl_->db, impl_->name(), "captures", fmt::format_int(run.number).c_str(), digest));
+    }
     SEAM_OK(chain_run(run.number));
     SEAM_OK(transaction.commit());
     stored = std::move(then);

@@ -563,7 +563,6 @@ TEST_F(Import, EveryCalibrationSolvesItsOwnExample) {
         refused({"calibrate", method}, "--example");
     }
     const ProgramResult fixed = run({"calibrate", "camera", (folder / "camera.json").string()});
-    EXPECT_THAT(fixed.out, HasSubstr("fixed"));
     EXPECT_THAT(fixed.out, testing::Not(HasSubstr("± 0 ")));
     const ProgramResult plane = run({"calibrate", "stripe-camera", (folder / "stripe-camera.json").string()});
     EXPECT_THAT(plane.out, testing::Not(HasSubstr("± 0 ")));

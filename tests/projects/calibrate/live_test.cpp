@@ -151,7 +151,7 @@ TEST_F(Live, RefusesWhatItCannotDo) {
         EXPECT_FALSE(live);
         return live ? std::string() : live.error().sentence();
     };
-    EXPECT_THAT(said("camera", options()), HasSubstr("from a file"));
+    EXPECT_THAT(said("stereo", options()), HasSubstr("from a file"));
     LiveCalibrationOptions o = options();
     o.sensor_id = "Z";
     EXPECT_THAT(said("tcp-sphere", o), HasSubstr("\"Z\""));

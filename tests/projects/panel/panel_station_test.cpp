@@ -248,7 +248,7 @@ TEST(PanelStation, MovesThePanelInOneStepAndProvesIt) {
     EXPECT_EQ(again->captures, 30);
     EXPECT_TRUE(again->differences.empty())
         << again->differences.front().what << again->differences.front().text;
-    EXPECT_TRUE(bench.station.file().check().empty());
+    for (const Error& found : bench.station.file().check()) ADD_FAILURE() << found.sentence();
     auto exported = export_file(bench.station.file());
     ASSERT_TRUE(exported);
     EXPECT_EQ((*exported)["runs"][0]["panel"]["verdict"], "in_tolerance");

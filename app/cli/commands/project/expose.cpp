@@ -101,10 +101,10 @@ Expected<void> edit(Spot& spot, const ExposeArguments& a) {
     SEAM_TRY(const auto settings, settings_in(a.set));
     ParameterValues* into = &light.settings;
     if (!a.paint.empty()) {
-        const auto known = std::find_if(light.paints.begin(), light.paints.end(),
-                                        [&](const PaintLight& p) { return p.paint == a.paint; });
-        if (known == light.paints.end()) light.paints.push_back({a.paint, {}});
-        into = known == light.paints.end() ? &light.paints.back().settings : &known->settings;
+        auto known = std::find_if(light.paints.begin(), light.paints.end(),
+                                  [&](const PaintLight& p) { return p.paint == a.paint; });
+        if (known == light.paints.end()) known = light.paints.insert(known, {a.paint, {}});
+        into = &known->settings;
     }
     for (const auto& [name, value] : settings) (*into)[name] = value;
     if (!a.merge.empty()) {
@@ -171,7 +171,7 @@ std::string found_text(const Spot& spot, const FoundLight& found) {
 }
 
 Expected<Answer> find(const ExposeArguments& a) {
-    SEAM_TRY(auto station, open_station(a.file, a.edits() ? std::optional(Deed::teach) : std::nullopt));
+    SEAM_TRY(auto station, open_station(a.file, a.keep ? std::optional(Deed::teach) : std::nullopt));
     Project project = station.project();
     SEAM_TRY(const auto chosen, chosen_spots(project, a));
     FindLightOptions search = a.search;

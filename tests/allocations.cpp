@@ -26,6 +26,15 @@ void* operator new(std::size_t bytes, std::align_val_t a) {
 void* operator new[](std::size_t bytes, std::align_val_t a) {
     return counted(bytes, static_cast<std::size_t>(a));
 }
+// The sanitizer's own variants that do not throw would take from another heap than the deletes below give back to.
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+    ++made;
+    return std::malloc(bytes);
+}
+void* operator new[](std::size_t bytes, const std::nothrow_t&) noexcept {
+    ++made;
+    return std::malloc(bytes);
+}
 void operator delete(void* p) noexcept {
     std::free(p);
 }

@@ -338,6 +338,17 @@ constexpr auto kWords = std::to_array<Word>({
     {"ascii", QT_TRANSLATE_NOOP("Words", "ASCII")},
 });
 
+struct Unit {
+    std::string_view ending, shown;
+};
+// The longest ending that fits counts.
+constexpr std::array kUnits{Unit{"_mm_s2", "mm/s²"}, Unit{"_deg_s2", "°/s²"}, Unit{"_mm_s", "mm/s"},
+                            Unit{"_deg_s", "°/s"},   Unit{"_ms", "ms"},       Unit{"_us", "µs"},
+                            Unit{"_ns", "ns"},       Unit{"_s", "s"},         Unit{"_mm", "mm"},
+                            Unit{"_deg", "°"},       Unit{"_hz", "Hz"},       Unit{"_khz", "kHz"},
+                            Unit{"_px", "px"},       Unit{"_kg", "kg"},       Unit{"_per_mille", "‰"},
+                            Unit{"_db", "dB"}};
+
 const Word* find(std::string_view identifier) {
     const auto at =
         std::find_if(kWords.begin(), kWords.end(), [&](const Word& w) { return w.identifier == identifier; });
@@ -353,6 +364,16 @@ bool has_word(std::string_view identifier) {
 QString shown_word(std::string_view identifier) {
     if (const Word* word = find(identifier)) return QCoreApplication::translate("Words", word->text);
     return QString::fromUtf8(identifier.data(), static_cast<qsizetype>(identifier.size())).replace('_', ' ');
+}
+
+ShownSetting shown_setting(std::string_view identifier) {
+    for (const Unit& u : kUnits)
+        if (identifier.size() > u.ending.size() && identifier.ends_with(u.ending))
+            return {shown_word(has_word(identifier)
+                                   ? identifier
+                                   : identifier.substr(0, identifier.size() - u.ending.size())),
+                    QString::fromUtf8(u.shown.data(), static_cast<qsizetype>(u.shown.size()))};
+    return {shown_word(identifier), {}};
 }
 
 }  // namespace seamwright

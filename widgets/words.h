@@ -12,4 +12,10 @@ namespace seamwright {
 QString shown_word(std::string_view identifier);
 bool has_word(std::string_view identifier);
 
+// A setting's name apart from the unit it ends with: "exposure_us" -> "Exposure", "µs"; no unit: empty.
+struct ShownSetting {
+    QString name, unit;
+};
+ShownSetting shown_setting(std::string_view identifier);
+
 }  // namespace seamwright

@@ -14,27 +14,33 @@
 namespace seamwright {
 namespace {
 
-struct OwnSpot {
-    int region = 0;
-    Eigen::Vector3d place = Eigen::Vector3d::Zero();  // work object
+struct RegionPlaces {
+    std::vector<std::string> spots;       // sorted
+    std::vector<Eigen::Vector3d> places;  // of the references, work object
 };
 
-// Spots that serve one region alone.
-std::vector<OwnSpot> own_spots(const Project& setup) {
-    std::vector<OwnSpot> out;
-    for (const Spot& spot : setup.spots) {
-        int region = -1, count = 0;
-        for (std::size_t r = 0; r < setup.regions.size(); ++r) {
-            const auto& ids = setup.regions[r].spot_ids;
-            if (std::find(ids.begin(), ids.end(), spot.id) == ids.end()) continue;
-            region = static_cast<int>(r);
-            ++count;
+std::vector<RegionPlaces> places_of_regions(const Project& setup) {
+    std::vector<RegionPlaces> out;
+    for (const Region& region : setup.regions) {
+        RegionPlaces& r = out.emplace_back();
+        for (const Spot& spot : setup.spots) {
+            if (std::find(region.spot_ids.begin(), region.spot_ids.end(), spot.id) == region.spot_ids.end())
+                continue;
+            const Calibration* calibration = calibration_of(setup, spot);
+            if (!calibration) continue;
+            r.spots.push_back(spot.id);
+            r.places.push_back(setup.part.base_from_workobject.inverse() * spot.base_from_flange *
+                               calibration->flange_from_sensor * spot.reference_mm);
         }
-        if (count != 1) continue;
-        if (const Calibration* calibration = calibration_of(setup, spot))
-            out.push_back({region, setup.part.base_from_workobject.inverse() * spot.base_from_flange *
-                                       calibration->flange_from_sensor * spot.reference_mm});
+        std::sort(r.spots.begin(), r.spots.end());
     }
+    return out;
+}
+
+std::vector<double> distances_mm(const Eigen::Vector3d& point, const RegionPlaces& region) {
+    std::vector<double> out;
+    for (const Eigen::Vector3d& place : region.places) out.push_back((place - point).norm());
+    std::sort(out.begin(), out.end());
     return out;
 }
 
@@ -60,21 +66,24 @@ Expected<std::vector<int>> regions_of(const Project& setup, const ApplicationPat
         std::fill(out.begin(), out.end(), 0);
         return out;
     }
-    const std::vector<OwnSpot> spots = own_spots(setup);
-    for (std::size_t r = 0; r < setup.regions.size(); ++r)
-        if (std::none_of(spots.begin(), spots.end(),
-                         [&](const OwnSpot& s) { return s.region == static_cast<int>(r); }))
-            return input_error(
-                Text("the path does not name its regions, and region {} has no spot of its own to go by",
-                     setup.regions[r].id),
-                "path", "add a column region");
+    const std::vector<RegionPlaces> regions = places_of_regions(setup);
+    for (std::size_t r = 0; r < regions.size(); ++r)
+        for (std::size_t other = 0; other < regions.size(); ++other)
+            if (r != other && std::includes(regions[other].spots.begin(), regions[other].spots.end(),
+                                            regions[r].spots.begin(), regions[r].spots.end()))
+                return input_error(
+                    Text("the path does not name its regions, and all spots of region {} belong "
+                         "to region {} too, so that they cannot be told apart by place",
+                         setup.regions[r].id, setup.regions[other].id),
+                    "path", "add a column region");
     for (std::size_t i = 0; i < out.size(); ++i) {
-        double nearest = std::numeric_limits<double>::infinity();
-        for (const OwnSpot& s : spots) {
-            const double distance = (s.place - workobject_from_tool[i].translation()).norm();
-            if (distance >= nearest) continue;
-            nearest = distance;
-            out[i] = s.region;
+        // In order of distance, spots that two regions share are equal in both: the nearest that they do not share decides.
+        std::vector<double> nearest{std::numeric_limits<double>::infinity()};
+        for (std::size_t r = 0; r < regions.size(); ++r) {
+            std::vector<double> distances = distances_mm(workobject_from_tool[i].translation(), regions[r]);
+            if (distances.empty() || distances >= nearest) continue;
+            nearest = std::move(distances);
+            out[i] = static_cast<int>(r);
         }
     }
     return out;

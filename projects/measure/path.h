@@ -37,8 +37,8 @@ struct PathAnswer {
     bool ok() const { return refusals.empty(); }
 };
 
-// Regions of points that name none: with one region it is that one, else that of the nearest spot among
-// those which belong to one region only, judged at the spots' references.
+// Regions of points that name none: with one region it is that one, else that of the nearest spot (its
+// reference) which the regions in question do not share.
 // Error (input): an unknown region in the path, no region can be told, what correct_path() refuses.
 Expected<PathAnswer> correct_application_path(const Project& setup, const RunRecord& run,
                                               const ApplicationPath& path, PathFrame frame,

@@ -132,6 +132,20 @@ TEST_F(Record, ThePathIsCorrectedByARun) {
     EXPECT_EQ(again["status"], "ok");
     EXPECT_EQ(again["points"].get<std::size_t>(), taught.size()) << "with the first point again at its end";
     EXPECT_NEAR(again["largest_shift_mm"].get<double>(), path["largest_shift_mm"].get<double>(), 0.5);
+    // The table names every point's region; by the places of the spots alone only some at the corners are told otherwise.
+    const std::string unnamed = (folder / "unnamed.csv").string(),
+                      by_place = (folder / "by_place.csv").string();
+    {
+        std::ofstream cut(unnamed);
+        for (const std::string& line : taught) cut << line.substr(0, line.rfind(',')) << '\n';
+    }
+    answer_of({"path", project, "--path", unnamed, "--brand", "kuka", "--closed", "--out", by_place});
+    const auto told = lines(std::filesystem::path(by_place) / "seamwright_path.csv");
+    ASSERT_EQ(told.size(), moved.size());
+    const auto region_of = [](const std::string& line) { return line.substr(line.rfind(',') + 1); };
+    int otherwise = 0;
+    for (std::size_t i = 1; i < told.size(); ++i) otherwise += region_of(told[i]) != region_of(moved[i]);
+    EXPECT_LE(otherwise, static_cast<int>(told.size()) / 6) << "of " << told.size();
     // A wrong notation and a run that is not there.
     EXPECT_EQ(run_program({"path", project, "--path", bead, "--brand", "abb"}, folder).exit_code, 2);
     EXPECT_EQ(

@@ -28,28 +28,6 @@ using Pointer = json::json_pointer;
 constexpr std::size_t kAlwaysShown = 4;
 constexpr int kSettingSigns = 22, kIndent_px = 14;
 
-struct Unit {
-    std::string_view ending, shown;
-};
-// The longest ending that fits counts.
-constexpr std::array kUnits{Unit{"_mm_s2", "mm/s²"}, Unit{"_deg_s2", "°/s²"}, Unit{"_mm_s", "mm/s"},
-                            Unit{"_deg_s", "°/s"},   Unit{"_ms", "ms"},       Unit{"_us", "µs"},
-                            Unit{"_ns", "ns"},       Unit{"_s", "s"},         Unit{"_mm", "mm"},
-                            Unit{"_deg", "°"},       Unit{"_hz", "Hz"},       Unit{"_khz", "kHz"},
-                            Unit{"_px", "px"},       Unit{"_kg", "kg"},       Unit{"_per_mille", "‰"}};
-
-struct Name {
-    QString name, unit;
-};
-Name name_of(std::string_view setting) {
-    for (const Unit& u : kUnits)
-        if (setting.size() > u.ending.size() && setting.ends_with(u.ending))
-            return {
-                shown_word(has_word(setting) ? setting : setting.substr(0, setting.size() - u.ending.size())),
-                QString::fromUtf8(u.shown.data(), static_cast<qsizetype>(u.shown.size()))};
-    return {shown_word(setting), {}};
-}
-
 // As a field shows it; empty for what is absent.
 QString text_of(const json& value) {
     if (value.is_null()) return {};
@@ -238,7 +216,7 @@ void SettingsEditor::set_value(const json& settings) {
 }
 
 QLabel* SettingsEditor::heading_for(const SettingInfo& s, int depth) {
-    auto* heading = new QLabel(name_of(s.name).name, this);
+    auto* heading = new QLabel(shown_setting(s.name).name, this);
     heading->setToolTip(Impl::help_of(s));
     heading->setContentsMargins(depth * kIndent_px, 6, 0, 0);
     QFont bold = heading->font();
@@ -302,7 +280,7 @@ void SettingsEditor::add_row(const SettingInfo& s, const nlohmann::json::json_po
     auto* across = new QHBoxLayout;
     across->setSpacing(6);
     lines->addLayout(across);
-    const Name name = name_of(s.name);
+    const ShownSetting name = shown_setting(s.name);
     const QString help = Impl::help_of(s);
     auto* label = new QLabel(name.name, row->line);
     label->setWordWrap(true);

@@ -295,7 +295,9 @@ TEST_F(Furniture, TheLightOfASpotIsFoundKeptUndoneAndTakenBack) {
     ASSERT_TRUE(me.wait([&] { return !spot().light.empty(); }));
     EXPECT_GT(spot().light.settings.at("exposure_us"), 50);
     EXPECT_GT(spot().reference_profile.size(), 0U) << "light takes no reference away";
-    EXPECT_TRUE(me.text_of("spot_light").contains("exposure_us"));
+    const QString said = QStringLiteral("Exposure %1 µs").arg(spot().light.settings.at("exposure_us"));
+    EXPECT_TRUE(me.wait([&] { return me.text_of("spot_light").contains(said); }))
+        << me.text_of("spot_light").toStdString();
     EXPECT_TRUE(me.text_of("light_found").contains("Found"));
     ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
     // What is measured from then on is cut with it, and the reference remembers it.

@@ -126,7 +126,7 @@ TEST(Path, PointsOfARegionMoveAsItsPushedFrameWould) {
     for (const int i : {56, 80, 100}) EXPECT_TRUE(at(i).isApprox(by(1, i), 1e-12)) << i;
     EXPECT_FALSE(at(50).isApprox(by(0, 50), 1e-6));
     EXPECT_FALSE(at(50).isApprox(by(1, 50), 1e-6));
-    // Nearest own spot: the border lies in the middle between S1 and S3, S2 has no say.
+    // The border lies in the middle between S1 and S3; S2, which both share, has no say.
     EXPECT_EQ(a->path.points[49].region_id, "left");
     EXPECT_EQ(a->path.points[51].region_id, "right");
     EXPECT_LT(a->corrected.largest_mm.mm, 0.3 * a->corrected.unblended_mm);

@@ -11,8 +11,10 @@ namespace {
 
 QString settings_words(const ParameterValues& settings) {
     QStringList parts;
-    for (const auto& [name, value] : settings)
-        parts << QStringLiteral("%1 %2").arg(QString::fromStdString(name), QString::number(value, 'g', 6));
+    for (const auto& [identifier, value] : settings) {
+        const auto [name, unit] = shown_setting(identifier);
+        parts << QStringLiteral("%1 %2 %3").arg(name, QString::number(value, 'g', 6), unit).trimmed();
+    }
     return parts.join(QStringLiteral(", "));
 }
 

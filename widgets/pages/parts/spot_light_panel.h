@@ -10,7 +10,7 @@
 
 namespace seamwright {
 
-// "exposure_us 812, gain_db 0; merged from 250, 2000 µs"; what the spot sets, or that it sets nothing.
+// "Exposure 812 µs, Gain 0 dB; merged from 250, 2000 µs"; what the spot sets, or that it sets nothing.
 QString light_words(const SpotLight& light);
 
 class SpotLightPanel : public QWidget {

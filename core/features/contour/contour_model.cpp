@@ -15,7 +15,8 @@ namespace {
 constexpr double kSmallestSigma_mm = 1e-4;
 constexpr int kNodesPerEdge = 64;
 // Sigmas of the next order's coefficient that a window may show.
-constexpr double kLineBend = 0.8, kParabolaBend = 1.5;
+constexpr double kAlike = 1.05;
+constexpr double kLineBend = 1.2, kParabolaBend = 2.2;
 
 // Sums over the point numbers of a window of m equally numbered points, counted from its middle:
 // s2 = sum xi^2, s4 = sum (xi^2 - mean2)^2 and s6 = sum (xi^3 - slope3 xi)^2 (the orthogonal parabola and
@@ -186,7 +187,14 @@ void ContourModel::build(const Profile& profile) {
                                           x * x, x * z, z * z, k * k * k * x, k * k * k * z};
         for (int j = 0; j < 11; ++j) sums_[i + 1][j] = sums_[i][j] + term[j];
     }
+    // Differences of neighbours are less than the noise where it is alike in neighbours (interpolation, smoothing): what the
+    // fits leave then says how much shape it hides.
+    const double of_neighbours = sigma_;
     fit_edges();
+    if (sigma_ > kAlike * of_neighbours) {
+        edges_.clear();
+        fit_edges();
+    }
     if (usable()) build_nodes();
 }
 

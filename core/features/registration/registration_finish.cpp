@@ -10,6 +10,9 @@ namespace {
 
 constexpr int kFewestOnWall = 5;
 constexpr double kSeenOfWall = 0.5;  // of its height
+constexpr int kFewestOfSlope = 4;    // points
+constexpr double kMostBare = 0.2;    // of the partners
+constexpr double kInsideWall = 0.9;  // of half its height
 
 // One linearisation of the finish.
 struct Normal {
@@ -58,15 +61,25 @@ void ContourMatcher::Impl::drop_sparse_walls() const {
     for (std::size_t i = 0; i < matches.size(); ++i) {
         const int edge = matches[i].foot.edge;
         if (!model.edges()[edge].wall) continue;
+        // The two sheets' own ends lie at a wall's ends whether it is seen or not.
+        if (std::abs(matches[i].foot.u) > kInsideWall * model.edges()[edge].half &&
+            !sampled_wall(static_cast<std::size_t>(edge)))
+            continue;
         const bool neighbours =
             i > 0 && matches[i - 1].foot.edge == edge && matches[i - 1].scene + 1 == matches[i].scene;
         wall_hits[edge] += neighbours ? kFewestOnWall : 1;
         auto& [low, high] = wall_seen[static_cast<std::size_t>(edge)];
         low = std::min(low, matches[i].foot.u), high = std::max(high, matches[i].foot.u);
     }
+    // Between two points of which no wider piece is known the slope is not: a bend within a pitch, or a point that stood
+    // in a step.
+    const auto bare = std::count_if(matches.begin(), matches.end(), [&](const Match& m) {
+        return model.edges()[m.foot.edge].count < kFewestOfSlope;
+    });
+    const bool leave_out_bare = bare < kMostBare * static_cast<double>(matches.size());
     std::erase_if(matches, [&](const Match& m) {
         const auto& edge = model.edges()[m.foot.edge];
-        if (!edge.wall) return false;
+        if (!edge.wall) return leave_out_bare && edge.count < kFewestOfSlope;
         const auto& [low, high] = wall_seen[static_cast<std::size_t>(m.foot.edge)];
         return wall_hits[m.foot.edge] < kFewestOnWall ||
                (high - low < kSeenOfWall * 2 * edge.half &&
@@ -100,8 +113,11 @@ void ContourMatcher::Impl::collect_jumps(const CentredPose& pose, double gate) c
             // x)).
             match.row = {-t.tx, -t.tz, -(-t.tx * t.z + t.tz * t.x)};
             match.residual = outside;
-            match.variance = (s.pitch * s.pitch + t.pitch * t.pitch) / 12 + scene.sigma_mm * scene.sigma_mm +
-                             model.sigma_mm() * model.sigma_mm();
+            // Where z grows away from the sensor, the end is where its shadow falls, which a turn moves along it.
+            const double shadow = t.of_gap ? 0 : 0.5 * t.height * pose.sine;
+            match.variance = (s.pitch * s.pitch + t.pitch * t.pitch) / 12 +
+                             (s.open - t.open) * (s.open - t.open) / 4 + shadow * shadow +
+                             scene.sigma_mm * scene.sigma_mm + model.sigma_mm() * model.sigma_mm();
         }
         if (best < std::numeric_limits<double>::infinity()) jump_matches.push_back(match);
     }

@@ -175,6 +175,9 @@ struct ContourMatcher::Impl {
     };
     NormalEquations normal_equations(const AcrossNoise& noise, const Finish& finish, double gate) const;
     void add_template_noise(NormalEquations& normal) const;  // from `influence`
+    // Neighbours whose noise is alike tell less than as many points by themselves: by how much the variance of a mean
+    // over many is larger, 1 + 2 (rho1 + rho2 + ...), from the residuals; at least 1.
+    double correlation(const AcrossNoise& noise, double scene_variance) const;
     void add_jumps_and_walls(NormalEquations& normal, double sigma) const;
     // The least determined direction (a twist), what is seen of it beyond the template's noise, and whether that may be
     // chance.

@@ -9,6 +9,7 @@ namespace {
 
 // Cosine of the steepest surface whose end is an edge: a rounded one ends for the sensor where it gets too
 // steep to be seen, which is another place of it at another turn.
+constexpr double kMostOpen = 3.5;  // pitches
 constexpr double kSteepest = 0.6;
 // Bent by more than this part of the chord's length, and by more than noise, behind its end: not an edge either.
 constexpr double kBow = 0.06, kBowNoise = 4;
@@ -166,7 +167,7 @@ JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int
         length += d;
         behind += step;
     }
-    JumpEnd end{x[upper], z[upper], double(-step), 0, 0, std::abs(z[upper] - z[lower])};
+    JumpEnd end{x[upper], z[upper], double(-step), 0, 0, std::abs(z[upper] - z[lower]), 0};
     const double dx = x[upper] - x[behind], dz = z[upper] - z[behind], d = std::hypot(dx, dz);
     const int near = std::clamp(upper - 3 * step, std::min(behind, upper), std::max(behind, upper));
     const double nx = x[upper] - x[near], nz = z[upper] - z[near];
@@ -184,8 +185,12 @@ JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int
         end.tz = dz / d;
         end.pitch = d / std::abs(upper - behind);
     }
-    end.x += 0.5 * end.pitch * end.tx;
-    end.z += 0.5 * end.pitch * end.tz;
+    // Half of the way to the lower side, which is farther than a pitch where a point is missing or stood in the step.
+    end.open = end.pitch;
+    if (const double across = std::abs((x[upper] - x[lower]) * end.tx); across <= kMostOpen * end.pitch)
+        end.open = std::max(end.pitch, across);
+    end.x += 0.5 * end.open * end.tx;
+    end.z += 0.5 * end.open * end.tz;
     return end;
 }
 

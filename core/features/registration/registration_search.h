@@ -46,6 +46,7 @@ struct JumpEnd {
     double tx, tz;        // unit, along the upper surface, outwards
     double pitch;         // along the surface
     double height;        // of the jump
+    double open;          // along the surface: how far the upper end and the lower beginning are apart
     bool is_edge = true;  // a sharp end; false where the surface bends out of sight
     bool of_gap = false;  // the rim of a gap, `height` its width
 };

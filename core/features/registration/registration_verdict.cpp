@@ -20,6 +20,10 @@ constexpr double kMuchSeen = 0.85, kMostReplaced = 0.25;
 // Slopes worth fewer points than this may be chance.
 constexpr double kFewPoints = 10;
 
+// Noise of neighbours is alike over this many points: interpolation onto a grid, a sensor's own smoothing, speckle.
+constexpr int kCorrelatedLags = 3;
+constexpr std::size_t kFewestPairs = 20;
+
 // Random points: as many beside the template as on it, and residuals that fill the gate evenly (0.58 of it).
 constexpr double kBesideTemplate = 1.5, kFillsGate = 0.45;
 
@@ -91,10 +95,44 @@ ContourMatcher::Impl::NormalEquations ContourMatcher::Impl::normal_equations(con
                  kLeastOfScene * noise.mean_square);
     normal.gradient *= scene_variance * n / relative_sum;
     add_template_noise(normal);
+    const double widening = correlation(noise, scene_variance);
+    normal.gradient *= widening;
     add_jumps_and_walls(normal, finish.sigma);
     // Directions that only the template's own noise seems to fix are not fixed.
-    normal.tilt *= template_variance;
+    normal.tilt *= widening * template_variance;
     return normal;
+}
+
+double ContourMatcher::Impl::correlation(const AcrossNoise& noise, double scene_variance) const {
+    const double template_variance = model.sigma_mm() * model.sigma_mm();
+    // What two partners share of the template's noise: both feet are fitted to some of the same points.
+    const auto shared = [&](const Match& m, const Match& other) {
+        const ContourModel::Edge &a = model.edges()[m.foot.edge], &b = model.edges()[other.foot.edge];
+        const ContourModel::Weights v = model.weights(a, m.foot.u), w = model.weights(b, other.foot.u);
+        double sum = 0;
+        for (int k = std::max(a.first, b.first); k < std::min(a.first + a.count, b.first + b.count); ++k) {
+            const double s = k - a.centre, t = k - b.centre;
+            sum += (v.a0 + s * (v.a1 + s * v.a2)) * (w.a0 + t * (w.a1 + t * w.a2));
+        }
+        return template_variance * sum;
+    };
+    double widening = 1;
+    for (int lag = 1; lag <= kCorrelatedLags; ++lag) {
+        double product = 0;
+        std::size_t pairs = 0, ahead = 0;
+        for (const Match& m : matches) {
+            while (ahead < matches.size() && matches[ahead].scene < m.scene + lag) ++ahead;
+            if (ahead == matches.size()) break;
+            const Match& other = matches[ahead];
+            if (other.scene != m.scene + lag) continue;
+            const double size = std::sqrt(noise.relative(model.edges()[m.foot.edge]) *
+                                          noise.relative(model.edges()[other.foot.edge]));
+            product += m.foot.residual * other.foot.residual / size - shared(m, other);
+            ++pairs;
+        }
+        if (pairs >= kFewestPairs) widening += 2 * product / (static_cast<double>(pairs) * scene_variance);
+    }
+    return std::max(widening, 1.0);
 }
 
 void ContourMatcher::Impl::add_template_noise(NormalEquations& normal) const {

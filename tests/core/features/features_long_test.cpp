@@ -100,11 +100,11 @@ TEST(MatchStatistics, CovarianceIsHonest) {
             across2 += 0.5 * e.head<2>().squaredNorm();
         }
         EXPECT_GE(n, 990) << c.name;
-        // Where a step fixes the place its error is uniform over a pitch, not Gaussian: an ellipse of the
-        // right variance then covers up to 98 %.
+        // Where a step fixes the place its error is uniform over a pitch, not Gaussian, and what its shadow may do is
+        // counted besides: the ellipse then covers up to 98.5 %.
         for (const double share : {covered / double(n), covered_pose / double(n)}) {
             EXPECT_GE(share, 0.925) << c.name;
-            EXPECT_LE(share, 0.98) << c.name;
+            EXPECT_LE(share, 0.985) << c.name;
         }
         if (c.scene_noise <= 0.02 && c.template_noise == 0) {
             EXPECT_LT(std::sqrt(across2 / n), 0.005) << c.name;

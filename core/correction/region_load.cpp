@@ -14,6 +14,40 @@ void put_xz(const Eigen::Matrix2d& c, Eigen::Matrix3d& out) {
     out(0, 2) = out(2, 0) = c(1, 0);
 }
 
+// The same of the usual spot, x and z observed alike: two by two.
+void fold_xz(const SpotObservation& in, const LocalTerms& local, PreparedSpot& s, Eigen::Matrix3d& flat) {
+    const double variance = in.sigma_mm * in.sigma_mm;
+    const auto repeating = [&](int i, int k) {
+        return local.taught.coeff(i, k) + local.reference.coeff(i, k);
+    };
+    const double xx = repeating(0, 0), zx = repeating(2, 0), zz = repeating(2, 2);
+    double nxx = variance, nzx = 0, nzz = variance;
+    if (in.covariance_mm2) {
+        nxx = in.covariance_mm2->coeff(0, 0);
+        nzx = in.covariance_mm2->coeff(1, 0);
+        nzz = in.covariance_mm2->coeff(1, 1);
+    }
+    Eigen::Matrix3d& t = s.shape;
+    const double a = std::sqrt(nxx + (local.run.coeff(0, 0) + xx));
+    const double c = (nzx + (local.run.coeff(2, 0) + zx)) / a;
+    const double d = std::sqrt(nzz + (local.run.coeff(2, 2) + zz) - c * c);
+    const double by = 1 / in.sigma_mm;
+    t.coeffRef(0, 0) = a * by;
+    t.coeffRef(2, 0) = c * by;
+    t.coeffRef(2, 2) = d * by;
+    flat.coeffRef(0, 0) = in.sigma_mm / a;
+    flat.coeffRef(2, 2) = in.sigma_mm / d;
+    flat.coeffRef(2, 0) = -c / a * flat.coeff(2, 2);
+    s.repeats = xx != 0 || zx != 0 || zz != 0;
+    // flat (xx, zx; zx, zz) flat^T / variance.
+    const double p = flat.coeff(0, 0), q = flat.coeff(2, 0), r = flat.coeff(2, 2), inverse = by * by;
+    const double qx = q * xx + r * zx, qz = q * zx + r * zz;
+    s.systematic.setZero();
+    s.systematic.coeffRef(0, 0) = p * p * xx * inverse;
+    s.systematic.coeffRef(2, 0) = s.systematic.coeffRef(0, 2) = p * qx * inverse;
+    s.systematic.coeffRef(2, 2) = (q * qx + r * qz) * inverse;
+}
+
 // shape with shape shape^T sigma^2 = noise + local terms over the observed axes; flat is its inverse.
 void fold(const SpotObservation& in, const LocalTerms& local, PreparedSpot& s, Eigen::Matrix3d& flat) {
     const double variance = in.sigma_mm * in.sigma_mm;
@@ -43,16 +77,21 @@ void fold(const SpotObservation& in, const LocalTerms& local, PreparedSpot& s, E
 }  // namespace
 
 LocalTerms local_terms(const SpotObservation& in, bool from_reference) {
+    return local_terms(in, from_reference,
+                       in.robot_covariance
+                           ? arrival_along_sensor(in.workobject_from_sensor, *in.robot_covariance)
+                           : Matrix6(Matrix6::Zero()));
+}
+
+LocalTerms local_terms(const SpotObservation& in, bool from_reference, const Matrix6& arrival) {
     LocalTerms out;
     if (in.robot_covariance && !in.robot_covariance->isZero(0)) {
         out.any = true;
-        const Pose& w = in.workobject_from_sensor;
         const bool curved = in.curve && in.weights.y() == 0;
         const bool travel = curved || in.weights.y() > 0;
-        out.run = arrival_covariance(w, *in.robot_covariance,
-                                     from_reference ? in.reference_mm : in.measured_mm, travel);
-        out.taught = arrival_covariance(w, *in.robot_covariance, in.reference_mm, travel) /
-                     static_cast<double>(in.reference_arrivals);
+        out.run = arrival_covariance(arrival, from_reference ? in.reference_mm : in.measured_mm, travel);
+        out.taught =
+            arrival_covariance(arrival, in.reference_mm, travel) / static_cast<double>(in.reference_arrivals);
         if (curved) {
             // An arrival further along the contour sees it where it runs on.
             Eigen::Matrix3d along = Eigen::Matrix3d::Identity();
@@ -85,10 +124,23 @@ Eigen::Matrix3d kept(const Eigen::Vector3d& weights, Eigen::Matrix3d covariance)
     return covariance;
 }
 
+const Matrix6& RegionSystem::arrival_of(std::size_t n, const SpotObservation& in) {
+    Arrival& known = arrivals_[n];
+    if (!in.robot_covariance) return known.along_sensor;
+    const Eigen::Matrix3d axes = in.workobject_from_sensor.linear();
+    if (!same_bits(known.axes, axes) || !same_bits(known.covariance, *in.robot_covariance)) {
+        known.axes = axes;
+        known.covariance = *in.robot_covariance;
+        known.along_sensor = arrival_along_sensor(in.workobject_from_sensor, known.covariance);
+    }
+    return known.along_sensor;
+}
+
 void RegionSystem::load(std::span<const SpotObservation> spots, const CorrectionOptions& options,
                         bool from_reference) {
     options_ = options;
     spots_.resize(spots.size());
+    arrivals_.resize(spots.size());
     binary_ = true;
     repeats_ = false;
     centroid_.setZero();
@@ -109,8 +161,11 @@ void RegionSystem::load(std::span<const SpotObservation> spots, const Correction
         s.shape.setIdentity();
         Eigen::Matrix3d flat = Eigen::Matrix3d::Identity();
         s.repeats = false;
-        if (const LocalTerms local = local_terms(in, from_reference); local.any) {
-            fold(in, local, s, flat);
+        if (const LocalTerms local = local_terms(in, from_reference, arrival_of(n, in)); local.any) {
+            if (in.weights.y() == 0 && in.weights.x() > 0 && in.weights.x() == in.weights.z())
+                fold_xz(in, local, s, flat);
+            else
+                fold(in, local, s, flat);
             repeats_ = repeats_ || s.repeats;
         } else if (in.covariance_mm2) {
             // Lower triangle of Cholesky, over sigma.
@@ -145,6 +200,7 @@ void RegionSystem::load(std::span<const SpotObservation> spots, const Correction
             s.geometry.reference = in.reference_mm;
             s.geometry.measured = from_reference ? in.reference_mm : in.measured_mm;
             s.geometry.flat = flat;
+            s.geometry.latency_travel = in.latency_travel_mm;
         }
         s.observed = 0;
         for (int i = 0; i < 3; ++i) {

@@ -91,6 +91,12 @@ Expected<Calibration> calibration_of_solution(const CalibrationMethod& method, c
         c.model = base->model;
         c.flange_from_sensor = base->flange_from_sensor;
         c.covariance = base->covariance;
+        c.scale_sigma = base->scale_sigma;
+        c.shear_sigma = base->shear_sigma;
+    }
+    if (solution.scale) {
+        c.scale_sigma = solution.scale->scale_sigma;
+        c.shear_sigma = solution.scale->shear_sigma;
     }
     c.method = method.id;
     c.verdict = judgement.verdict;

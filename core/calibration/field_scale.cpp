@@ -7,6 +7,13 @@
 
 namespace seamwright {
 
+FieldScale better_known(const FieldScale& a, const FieldScale& b) {
+    const auto said = [](const FieldScale& s) { return !s.scale_sigma.isZero(0) || s.shear_sigma > 0; };
+    if (!said(a) || (b.shown && !a.shown)) return b;
+    if (!said(b) || (a.shown && !b.shown)) return a;
+    return {a.scale_sigma.cwiseMin(b.scale_sigma), std::min(a.shear_sigma, b.shear_sigma), a.shown};
+}
+
 FieldScale field_scale(std::span<const Eigen::Vector2d> places, const Eigen::MatrixXd& covariance) {
     const auto n = static_cast<Eigen::Index>(places.size());
     if (n < 3 || covariance.rows() != 2 * n || covariance.cols() != 2 * n || !covariance.allFinite())
@@ -27,7 +34,7 @@ FieldScale field_scale(std::span<const Eigen::Vector2d> places, const Eigen::Mat
         from(2, 2 * i + 1) = inverse.x(1, i);  // a turn takes the same off one and puts it on the other
     }
     const Eigen::VectorXd variance = (from * covariance * from.transpose()).diagonal().cwiseMax(0);
-    return {{std::sqrt(variance[0]), std::sqrt(variance[1])}, std::sqrt(variance[2])};
+    return {{std::sqrt(variance[0]), std::sqrt(variance[1])}, std::sqrt(variance[2]), false};
 }
 
 }  // namespace seamwright

@@ -12,7 +12,11 @@ namespace seamwright {
 struct FieldScale {
     Eigen::Vector2d scale_sigma = Eigen::Vector2d::Zero();  // of x, z
     double shear_sigma = 0;
+    bool shown = false;  // measured beyond chance: it counts whatever else is known
 };
+
+// Of two that hold for one sensor: the smaller of each, unless one is shown.
+FieldScale better_known(const FieldScale& a, const FieldScale& b);
 
 // From the covariance of places (x, z) of the field, mm^2, (x, z) of each in turn: the linear part of their errors by
 // least squares, e = t + L p, turned so that the lower left of L is 0. Zero of fewer than three places, or of such on one

@@ -343,7 +343,8 @@ Matrix6 RegionSystem::tangent_of(const Matrix6& covariance_xi, const State& stat
     Matrix6 s = Matrix6::Identity();
     s.topRightCorner<3, 3>() = skew(state.rotation * centroid_) / spread_;
     s.bottomRightCorner<3, 3>() /= spread_;
-    Matrix6 tangent = s * covariance_xi * s.transpose();
+    Matrix6 tangent;
+    tangent = s * covariance_xi * s.transpose();  // assigned: constructed, Eigen rounds it otherwise
     for (int i = 0; i < 3; ++i) {
         if (options_.free[static_cast<std::size_t>(i)]) continue;
         tangent.row(i).setZero();

@@ -210,7 +210,7 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
             "tcp-sphere");
     c.flange_from_sensor = tcp.flange_from_sensor;
     c.covariance = tcp.covariance;
-    const FieldScale& scale = tcp.scale.shear_sigma > 0 ? tcp.scale : camera.scale;
+    const FieldScale scale = better_known(camera.scale, tcp.scale);
     c.scale_sigma = scale.scale_sigma;
     c.shear_sigma = scale.shear_sigma;
     c.method = "stripe-camera + tcp-sphere";

@@ -492,9 +492,8 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     write_statistics(model, covariance_of(sections, model, system, known.inverse, noise, stated, radius_free),
                      radius_free, result);
     if (!radius_free)
-        result.scale = sphere_scale(sections, model, noise.point_variance,
-                                    std::sqrt(std::max(stated, noise.centre_variance) +
-                                              result.working_sigma_mm * result.working_sigma_mm));
+        result.scale =
+            sphere_scale(sections, model, noise.point_variance, std::max(stated, noise.centre_variance));
     write_poses(observations, sections, excluded, &model, result.report);
     if (options.thorough) result.report.hold_out = verify(sections, model, radius_free);
     result.mirrored = judge_axes(sections, observations, options, model, result.notices);

@@ -95,8 +95,13 @@ Expected<Calibration> calibration_of_solution(const CalibrationMethod& method, c
         c.shear_sigma = base->shear_sigma;
     }
     if (solution.scale) {
-        c.scale_sigma = solution.scale->scale_sigma;
-        c.shear_sigma = solution.scale->shear_sigma;
+        // Where the sensor sits says something of its millimetres; a new camera or table says all.
+        const bool same_millimetres = base && std::holds_alternative<SensorOnFlange>(solution.found);
+        const FieldScale scale =
+            same_millimetres ? better_known({base->scale_sigma, base->shear_sigma, false}, *solution.scale)
+                             : *solution.scale;
+        c.scale_sigma = scale.scale_sigma;
+        c.shear_sigma = scale.shear_sigma;
     }
     c.method = method.id;
     c.verdict = judgement.verdict;

@@ -243,6 +243,7 @@ void put_scale(const FieldScale& scale, CalibrationSolution& solution) {
     solution.scale = scale;
     solution.document["scale_sigma"] = {scale.scale_sigma.x(), scale.scale_sigma.y()};
     solution.document["shear_sigma"] = scale.shear_sigma;
+    if (scale.shown) solution.document["scale_shown"] = true;
 }
 
 namespace {
@@ -253,7 +254,9 @@ std::optional<FieldScale> scale_in(const json& document) {
     if (scale == document.end() || !scale->is_array() || scale->size() != 2 || !(*scale)[0].is_number() ||
         !(*scale)[1].is_number())
         return std::nullopt;
-    const FieldScale found{{(*scale)[0].get<double>(), (*scale)[1].get<double>()}, shear};
+    const FieldScale found{{(*scale)[0].get<double>(), (*scale)[1].get<double>()},
+                           shear,
+                           document.value("scale_shown", json()) == json(true)};
     constexpr double kMost = 0.1;
     const bool sound = found.scale_sigma.minCoeff() >= 0 && found.scale_sigma.maxCoeff() <= kMost &&
                        shear >= 0 && shear <= kMost;

@@ -87,7 +87,8 @@ Expected<CalibrationSolution> solution_from_document(const nlohmann::json& docum
 
 // Puts the report, notices and what the poses leave open into the document, beside a method's own fields.
 void finish_document(CalibrationSolution& solution);
-// "scale_sigma" [x, z] and "shear_sigma", 1/1, into solution and document; a scale that is not told is left out.
+// "scale_sigma" [x, z] and "shear_sigma", 1/1, and "scale_shown" into solution and document; a scale that is not told is
+// left out.
 void put_scale(const FieldScale& scale, CalibrationSolution& solution);
 // The same of a judgement alone: "verdict", "reason", "cure".
 void put_judgement(const Judgement& judgement, nlohmann::json& document);

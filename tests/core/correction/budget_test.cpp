@@ -164,10 +164,12 @@ TEST(Budget, SharesOfTriggerDriftAndWorkObjectAddUp) {
         // Where the part has not moved, latency and work object cost nothing; drift does.
         for (const BudgetTerm& t : budget->terms) {
             if (i % 4 != 0) continue;
-            if (t.source == ErrorSource::latency || t.source == ErrorSource::workobject)
+            if (t.source == ErrorSource::latency || t.source == ErrorSource::workobject) {
                 EXPECT_LT(t.covariance.diagonal().head<3>().maxCoeff(), 1e-12) << to_string(t.source);
-            if (t.source == ErrorSource::sensor_drift || t.source == ErrorSource::robot_drift)
+            }
+            if (t.source == ErrorSource::sensor_drift || t.source == ErrorSource::robot_drift) {
                 EXPECT_GT(t.covariance.diagonal().head<3>().maxCoeff(), 1e-7) << to_string(t.source);
+            }
         }
     }
 }

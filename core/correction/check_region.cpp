@@ -33,9 +33,10 @@ bool covariance_of_pose(const Matrix6& c) {
            c.diagonal().tail<3>().maxCoeff() <= kLargestRad * kLargestRad;
 }
 
-Expected<void> check_sensors(std::span<const SpotObservation> spots,
-                             const std::vector<SensorPrior>& sensors) {
-    for (std::size_t i = 0; i < sensors.size(); ++i) {
+Expected<void> check_sensors(std::span<const SpotObservation> spots, const std::vector<SensorPrior>& sensors,
+                             const Accepted* accepted) {
+    const bool known = accepted && same_priors(accepted->sensors, sensors);
+    for (std::size_t i = 0; i < sensors.size() && !known; ++i) {
         const SensorPrior& p = sensors[i];
         const auto at = [&](const char* field) { return Text("sensors \"{}\" {}", p.id, field); };
         if (p.id.empty())
@@ -78,15 +79,18 @@ Expected<void> check_sensors(std::span<const SpotObservation> spots,
 }
 
 // As it was accepted before at the same place.
-bool known(const Accepted* accepted, std::size_t n, const Matrix6& covariance) {
-    return accepted && n < accepted->size() && same_bits((*accepted)[n], covariance);
+bool known(Accepted* accepted, std::size_t n, const Matrix6& covariance) {
+    if (!accepted) return false;
+    Accepted::Robot& robot = accepted->robots[n];
+    robot.same = robot.revision > 0 && same_bits(robot.covariance, covariance);
+    return robot.same;
 }
 
 tl::unexpected<Error> twice(const std::string& id) {
     return input_error(Text("the spot id \"{}\" occurs twice", id), "spots", "give every spot its own id");
 }
 
-Expected<void> check_spot(std::size_t n, const SpotObservation& s, bool measured, const Accepted* accepted) {
+Expected<void> check_spot(std::size_t n, const SpotObservation& s, bool measured, Accepted* accepted) {
     const auto bad_point = [](const Eigen::Vector3d& p) {
         return !p.allFinite() || p.cwiseAbs().maxCoeff() > kFarthestMm;
     };
@@ -177,8 +181,9 @@ Expected<void> check_region(std::span<const SpotObservation> spots, const Correc
     if (!(o.robot_drift_sigma_mm >= 0 && o.robot_drift_sigma_mm <= kLargestMm))
         return input_error("the sigma of the robot's drift is negative, not finite or above 1000 mm",
                            "robot_drift_sigma_mm", "give mm");
+    if (accepted) accepted->robots.resize(spots.size());
     for (std::size_t n = 0; n < spots.size(); ++n) SEAM_OK(check_spot(n, spots[n], measured, accepted));
-    SEAM_OK(check_sensors(spots, o.sensors));
+    SEAM_OK(check_sensors(spots, o.sensors, accepted));
     // Few spots are compared pair by pair, which needs no memory; many are sorted.
     if (spots.size() <= 64) {
         for (std::size_t n = 0; n < spots.size(); ++n) {
@@ -194,9 +199,13 @@ Expected<void> check_region(std::span<const SpotObservation> spots, const Correc
         if (same != ids.end()) return twice(std::string(*same));
     }
     if (accepted) {
-        accepted->resize(spots.size(), Matrix6::Zero());
-        for (std::size_t n = 0; n < spots.size(); ++n)
-            if (spots[n].robot_covariance) (*accepted)[n] = *spots[n].robot_covariance;
+        for (std::size_t n = 0; n < spots.size(); ++n) {
+            Accepted::Robot& robot = accepted->robots[n];
+            if (!spots[n].robot_covariance || robot.same) continue;
+            robot.covariance = *spots[n].robot_covariance;
+            robot.revision = ++accepted->revisions;
+        }
+        if (!same_priors(accepted->sensors, o.sensors)) accepted->sensors = o.sensors;
     }
     return {};
 }

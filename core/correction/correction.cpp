@@ -183,7 +183,7 @@ struct RegionSolver::Impl {
         r.iterations = 0;
 
         factor.assign(spots.size(), 1.0);
-        system.load(spots, options, false);
+        system.load(spots, options, false, &accepted);
         fit.clear();
 
         int observed = 0;
@@ -192,9 +192,9 @@ struct RegionSolver::Impl {
         system.fit(factor, fit);
         Verdict verdict = Verdict::agree;
         Spread spread = fit.converged ? system.spread(fit.lin, fit.state) : Spread{};
-        Agreement a = agreement(system, fit, spread, factor);
-        const bool agreed = fit.converged && a.plausible &&
-                            a.smallest_p >= options.outlier_significance / static_cast<double>(spots.size());
+        const double level = options.outlier_significance / static_cast<double>(spots.size());
+        Agreement a = agreement(system, fit, spread, factor, level);
+        const bool agreed = fit.converged && a.plausible && a.smallest_p >= level;
         if (!agreed || r.redundancy < 6 || !system.surely_observable(spread)) {
             // Judged on the taught geometry: a wild measure that nothing contradicts must not lend the region
             // a lever that it does not have.

@@ -1,5 +1,6 @@
 #include "core/correction/nuisance.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace seamwright {
@@ -84,6 +85,15 @@ bool is_zero(const SensorPrior& prior) {
            prior.latency_sigma == 0 && prior.speed_sigma == 0 && prior.drift_sigma_mm.isZero(0);
 }
 
+bool same_priors(const std::vector<SensorPrior>& a, const std::vector<SensorPrior>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const SensorPrior& p, const SensorPrior& q) {
+        return p.id == q.id && same_bits(p.hand_eye_covariance, q.hand_eye_covariance) &&
+               p.scale_sigma == q.scale_sigma && p.shear_sigma == q.shear_sigma &&
+               p.latency_sigma == q.latency_sigma && p.speed_sigma == q.speed_sigma &&
+               p.drift_sigma_mm == q.drift_sigma_mm;
+    });
+}
+
 SharedRoot root_of(const SensorPrior& prior) {
     SharedRoot out;
     const Matrix6& c = prior.hand_eye_covariance;
@@ -147,6 +157,20 @@ Matrix6 arrival_along_sensor(const Pose& pose, const Matrix6& c) {
     return out;
 }
 
+CovarianceXz arrival_xz(const Matrix6& c, const Eigen::Vector3d& p) {
+    // x moves by rho_x + theta_y p_z - theta_z p_y, z by rho_z + theta_x p_y - theta_y p_x.
+    const double px = p.x(), py = p.y(), pz = p.z();
+    CovarianceXz out;
+    out.xx = c.coeff(0, 0) + pz * pz * c.coeff(4, 4) + py * py * c.coeff(5, 5) +
+             2 * (pz * c.coeff(0, 4) - py * c.coeff(0, 5) - pz * py * c.coeff(4, 5));
+    out.zz = c.coeff(2, 2) + py * py * c.coeff(3, 3) + px * px * c.coeff(4, 4) +
+             2 * (py * c.coeff(2, 3) - px * c.coeff(2, 4) - px * py * c.coeff(3, 4));
+    out.zx = c.coeff(0, 2) + py * c.coeff(0, 3) - px * c.coeff(0, 4) +
+             pz * (c.coeff(4, 2) + py * c.coeff(4, 3) - px * c.coeff(4, 4)) -
+             py * (c.coeff(5, 2) + py * c.coeff(5, 3) - px * c.coeff(5, 4));
+    return out;
+}
+
 Eigen::Matrix3d arrival_covariance(const Matrix6& c, const Eigen::Vector3d& p, bool travel) {
     // A point moves by rho + theta x p = rho - [p] theta.
     Eigen::Matrix3d out = Eigen::Matrix3d::Zero();
@@ -158,18 +182,10 @@ Eigen::Matrix3d arrival_covariance(const Matrix6& c, const Eigen::Vector3d& p, b
         out -= rho_theta.lazyProduct(lever.transpose());
         return out;
     }
-    // x moves by rho_x + theta_y p_z - theta_z p_y, z by rho_z + theta_x p_y - theta_y p_x.
-    const double px = p.x(), py = p.y(), pz = p.z();
-    const double xx = c.coeff(0, 0) + pz * pz * c.coeff(4, 4) + py * py * c.coeff(5, 5) +
-                      2 * (pz * c.coeff(0, 4) - py * c.coeff(0, 5) - pz * py * c.coeff(4, 5));
-    const double zz = c.coeff(2, 2) + py * py * c.coeff(3, 3) + px * px * c.coeff(4, 4) +
-                      2 * (py * c.coeff(2, 3) - px * c.coeff(2, 4) - px * py * c.coeff(3, 4));
-    const double xz = c.coeff(0, 2) + py * c.coeff(0, 3) - px * c.coeff(0, 4) +
-                      pz * (c.coeff(4, 2) + py * c.coeff(4, 3) - px * c.coeff(4, 4)) -
-                      py * (c.coeff(5, 2) + py * c.coeff(5, 3) - px * c.coeff(5, 4));
-    out(0, 0) = xx;
-    out(0, 2) = out(2, 0) = xz;
-    out(2, 2) = zz;
+    const CovarianceXz xz = arrival_xz(c, p);
+    out(0, 0) = xz.xx;
+    out(0, 2) = out(2, 0) = xz.zx;
+    out(2, 2) = xz.zz;
     return out;
 }
 

@@ -74,6 +74,7 @@ bool definite(const Matrix6& covariance);
 
 SharedRoot root_of(const SensorPrior& prior);
 bool is_zero(const SensorPrior& prior);
+bool same_priors(const std::vector<SensorPrior>& a, const std::vector<SensorPrior>& b);
 
 // d(f e)/du of the residual e along f (sensor frame), its first root.count numbers; the rest is left alone. `axis` =
 // R W f with W the sensor's axes in the work object and R the rotation of D; y = W^-1 D^-1 W m.
@@ -84,6 +85,12 @@ void shared_row(const SharedGeometry& spot, const SharedRoot& root, const Eigen:
 Matrix6 arrival_along_sensor(const Pose& pose, const Matrix6& covariance);
 // Covariance of a point p (sensor frame) by it, along the sensor's axes. Without `travel` the row and column of Y stay 0.
 Eigen::Matrix3d arrival_covariance(const Matrix6& along_sensor, const Eigen::Vector3d& p, bool travel = true);
+
+// Its x and z alone.
+struct CovarianceXz {
+    double xx = 0, zx = 0, zz = 0;
+};
+CovarianceXz arrival_xz(const Matrix6& along_sensor, const Eigen::Vector3d& p);
 
 // columns^T (lower lower^T)^-1 columns.
 Eigen::Matrix3d left_uncertain(const SharedBlock& block, const SharedColumns& columns);

@@ -14,40 +14,6 @@ void put_xz(const Eigen::Matrix2d& c, Eigen::Matrix3d& out) {
     out(0, 2) = out(2, 0) = c(1, 0);
 }
 
-// The same of the usual spot, x and z observed alike: two by two.
-void fold_xz(const SpotObservation& in, const LocalTerms& local, PreparedSpot& s, Eigen::Matrix3d& flat) {
-    const double variance = in.sigma_mm * in.sigma_mm;
-    const auto repeating = [&](int i, int k) {
-        return local.taught.coeff(i, k) + local.reference.coeff(i, k);
-    };
-    const double xx = repeating(0, 0), zx = repeating(2, 0), zz = repeating(2, 2);
-    double nxx = variance, nzx = 0, nzz = variance;
-    if (in.covariance_mm2) {
-        nxx = in.covariance_mm2->coeff(0, 0);
-        nzx = in.covariance_mm2->coeff(1, 0);
-        nzz = in.covariance_mm2->coeff(1, 1);
-    }
-    Eigen::Matrix3d& t = s.shape;
-    const double a = std::sqrt(nxx + (local.run.coeff(0, 0) + xx));
-    const double c = (nzx + (local.run.coeff(2, 0) + zx)) / a;
-    const double d = std::sqrt(nzz + (local.run.coeff(2, 2) + zz) - c * c);
-    const double by = 1 / in.sigma_mm;
-    t.coeffRef(0, 0) = a * by;
-    t.coeffRef(2, 0) = c * by;
-    t.coeffRef(2, 2) = d * by;
-    flat.coeffRef(0, 0) = in.sigma_mm / a;
-    flat.coeffRef(2, 2) = in.sigma_mm / d;
-    flat.coeffRef(2, 0) = -c / a * flat.coeff(2, 2);
-    s.repeats = xx != 0 || zx != 0 || zz != 0;
-    // flat (xx, zx; zx, zz) flat^T / variance.
-    const double p = flat.coeff(0, 0), q = flat.coeff(2, 0), r = flat.coeff(2, 2), inverse = by * by;
-    const double qx = q * xx + r * zx, qz = q * zx + r * zz;
-    s.systematic.setZero();
-    s.systematic.coeffRef(0, 0) = p * p * xx * inverse;
-    s.systematic.coeffRef(2, 0) = s.systematic.coeffRef(0, 2) = p * qx * inverse;
-    s.systematic.coeffRef(2, 2) = (q * qx + r * qz) * inverse;
-}
-
 // shape with shape shape^T sigma^2 = noise + local terms over the observed axes; flat is its inverse.
 void fold(const SpotObservation& in, const LocalTerms& local, PreparedSpot& s, Eigen::Matrix3d& flat) {
     const double variance = in.sigma_mm * in.sigma_mm;
@@ -72,6 +38,53 @@ void fold(const SpotObservation& in, const LocalTerms& local, PreparedSpot& s, E
     s.repeats = !systematic.isZero(0);
     const Eigen::Matrix3d half = flat.lazyProduct(systematic);
     s.systematic = half.lazyProduct(flat.transpose()) / variance;
+}
+
+// The same of the usual spot, straight and x and z observed alike: two by two. False where nothing errs.
+bool fold_xz(const SpotObservation& in, const Matrix6* arrival, const Eigen::Vector3d& measured_mm,
+             PreparedSpot& s, Eigen::Matrix3d& flat) {
+    const double variance = in.sigma_mm * in.sigma_mm;
+    CovarianceXz run, same;
+    if (arrival) {
+        run = arrival_xz(*arrival, measured_mm);
+        const CovarianceXz taught = arrival_xz(*arrival, in.reference_mm);
+        const double share = 1 / static_cast<double>(in.reference_arrivals);
+        same = {share * taught.xx, share * taught.zx, share * taught.zz};
+    }
+    if (in.reference_covariance_mm2) {
+        const Eigen::Matrix2d& c = *in.reference_covariance_mm2;
+        if (!arrival && c.isZero(0)) return false;
+        same.xx += c.coeff(0, 0);
+        same.zx += c.coeff(1, 0);
+        same.zz += c.coeff(1, 1);
+    } else if (!arrival) {
+        return false;
+    }
+    double nxx = variance, nzx = 0, nzz = variance;
+    if (in.covariance_mm2) {
+        nxx = in.covariance_mm2->coeff(0, 0);
+        nzx = in.covariance_mm2->coeff(1, 0);
+        nzz = in.covariance_mm2->coeff(1, 1);
+    }
+    // Cholesky (a, 0; c, d), and its inverse.
+    const double a = std::sqrt(nxx + run.xx + same.xx), per_a = 1 / a;
+    const double c = (nzx + run.zx + same.zx) * per_a;
+    const double d = std::sqrt(nzz + run.zz + same.zz - c * c);
+    const double by = 1 / in.sigma_mm, p = in.sigma_mm * per_a, r = in.sigma_mm / d, q = -c * per_a * r;
+    s.shape.coeffRef(0, 0) = a * by;
+    s.shape.coeffRef(2, 0) = c * by;
+    s.shape.coeffRef(2, 2) = d * by;
+    flat.coeffRef(0, 0) = p;
+    flat.coeffRef(2, 0) = q;
+    flat.coeffRef(2, 2) = r;
+    s.repeats = same.xx != 0 || same.zx != 0 || same.zz != 0;
+    // flat (xx, zx; zx, zz) flat^T / variance.
+    const double inverse = by * by, qx = q * same.xx + r * same.zx, qz = q * same.zx + r * same.zz;
+    s.systematic.setZero();
+    s.systematic.coeffRef(0, 0) = p * p * same.xx * inverse;
+    s.systematic.coeffRef(2, 0) = s.systematic.coeffRef(0, 2) = p * qx * inverse;
+    s.systematic.coeffRef(2, 2) = (q * qx + r * qz) * inverse;
+    return true;
 }
 
 }  // namespace
@@ -124,32 +137,40 @@ Eigen::Matrix3d kept(const Eigen::Vector3d& weights, Eigen::Matrix3d covariance)
     return covariance;
 }
 
-const Matrix6& RegionSystem::arrival_of(std::size_t n, const SpotObservation& in) {
+const RegionSystem::Arrival& RegionSystem::arrival_of(std::size_t n, const SpotObservation& in,
+                                                      const Accepted* accepted) {
     Arrival& known = arrivals_[n];
-    if (!in.robot_covariance) return known.along_sensor;
+    if (!in.robot_covariance) return known;
     const Eigen::Matrix3d axes = in.workobject_from_sensor.linear();
-    if (!same_bits(known.axes, axes) || !same_bits(known.covariance, *in.robot_covariance)) {
+    const unsigned revision = accepted ? accepted->robots[n].revision : 0;
+    const bool same =
+        revision > 0 ? known.revision == revision : same_bits(known.covariance, *in.robot_covariance);
+    if (!same || !same_bits(known.axes, axes)) {
         known.axes = axes;
         known.covariance = *in.robot_covariance;
         known.along_sensor = arrival_along_sensor(in.workobject_from_sensor, known.covariance);
+        known.revision = revision;
+        known.none = known.covariance.isZero(0);
     }
-    return known.along_sensor;
+    return known;
 }
 
 void RegionSystem::load(std::span<const SpotObservation> spots, const CorrectionOptions& options,
-                        bool from_reference) {
+                        bool from_reference, const Accepted* accepted) {
+    if (!same_priors(options_.sensors, options.sensors)) {
+        priors_.clear();
+        prior_of_.clear();
+        for (const SensorPrior& prior : options.sensors) {
+            prior_of_.push_back(is_zero(prior) ? -1 : static_cast<int>(priors_.size()));
+            if (prior_of_.back() >= 0) priors_.push_back(root_of(prior));
+        }
+    }
     options_ = options;
     spots_.resize(spots.size());
     arrivals_.resize(spots.size());
     binary_ = true;
     repeats_ = false;
     centroid_.setZero();
-    priors_.clear();
-    prior_of_.clear();
-    for (const SensorPrior& prior : options.sensors) {
-        prior_of_.push_back(is_zero(prior) ? -1 : static_cast<int>(priors_.size()));
-        if (prior_of_.back() >= 0) priors_.push_back(root_of(prior));
-    }
     const auto prior_index = [&](const std::string& id) {
         for (std::size_t i = 0; i < options.sensors.size(); ++i)
             if (options.sensors[i].id == id) return prior_of_[i];
@@ -161,11 +182,18 @@ void RegionSystem::load(std::span<const SpotObservation> spots, const Correction
         s.shape.setIdentity();
         Eigen::Matrix3d flat = Eigen::Matrix3d::Identity();
         s.repeats = false;
-        if (const LocalTerms local = local_terms(in, from_reference, arrival_of(n, in)); local.any) {
-            if (in.weights.y() == 0 && in.weights.x() > 0 && in.weights.x() == in.weights.z())
-                fold_xz(in, local, s, flat);
-            else
-                fold(in, local, s, flat);
+        const Arrival& arrival = arrival_of(n, in, accepted);
+        bool folded = false;
+        if (in.weights.y() == 0 && in.weights.x() > 0 && in.weights.x() == in.weights.z() && !in.curve) {
+            const bool arrives = in.robot_covariance && !arrival.none;
+            folded = fold_xz(in, arrives ? &arrival.along_sensor : nullptr,
+                             from_reference ? in.reference_mm : in.measured_mm, s, flat);
+        } else if (const LocalTerms local = local_terms(in, from_reference, arrival.along_sensor);
+                   local.any) {
+            fold(in, local, s, flat);
+            folded = true;
+        }
+        if (folded) {
             repeats_ = repeats_ || s.repeats;
         } else if (in.covariance_mm2) {
             // Lower triangle of Cholesky, over sigma.

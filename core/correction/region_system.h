@@ -90,10 +90,24 @@ struct PreparedSpot {
     SharedGeometry geometry;
 };
 
+// What was found to be covariances, by spot and sensor: they are the same part after part, and looking costs.
+struct Accepted {
+    struct Robot {
+        Matrix6 covariance = Matrix6::Zero();
+        unsigned revision = 0;  // another with every other covariance; 0: none
+        bool same = false;      // as in the call before
+    };
+    std::vector<Robot> robots;
+    unsigned revisions = 0;
+    std::vector<SensorPrior> sensors;
+};
+
 class RegionSystem {
   public:
-    // `from_reference`: the taught points stand for the measured ones (planning).
-    void load(std::span<const SpotObservation> spots, const CorrectionOptions& options, bool from_reference);
+    // `from_reference`: the taught points stand for the measured ones (planning). `accepted`: of check_region() of the
+    // same spots, always from the same place; may be null.
+    void load(std::span<const SpotObservation> spots, const CorrectionOptions& options, bool from_reference,
+              const Accepted* accepted = nullptr);
 
     std::size_t size() const { return spots_.size(); }
     const PreparedSpot& spot(std::size_t n) const { return spots_[n]; }
@@ -149,9 +163,11 @@ class RegionSystem {
     // Levenberg-Marquardt from identity; then, where sensors have priors, Gauss-Newton steps with their errors
     // as unknowns.
     void fit(std::span<const double> factor, Fit& out) const;
-    // Residual and rows at the fit as residual() gives them, freed of the sensors' errors as estimated, and
-    // the covariance that their uncertainty leaves in the residual.
-    void cleared(std::size_t n, const Fit& fit, Eigen::Vector3d& e, Rows& rows, Eigen::Matrix3d& left) const;
+    // Residual and rows at the fit as residual() gives them, freed of the sensors' errors as estimated.
+    void cleared(std::size_t n, const Fit& fit, Eigen::Vector3d& e, Rows& rows) const;
+    // The covariance that the sensors' uncertainty leaves in that residual, and a quick upper bound of it.
+    Eigen::Matrix3d left(std::size_t n, const Fit& fit) const;
+    Eigen::Matrix3d left_at_most(std::size_t n, const Fit& fit) const;
     // The two parts of spread.covariance, in xi. `shared` may be empty where nothing is shared.
     struct Parts {
         Matrix6 random, systematic;
@@ -187,8 +203,10 @@ class RegionSystem {
     struct Arrival {
         Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
         Matrix6 covariance = Matrix6::Zero(), along_sensor = Matrix6::Zero();
+        unsigned revision = 0;
+        bool none = true;
     };
-    const Matrix6& arrival_of(std::size_t n, const SpotObservation& spot);
+    const Arrival& arrival_of(std::size_t n, const SpotObservation& spot, const Accepted* accepted);
 
     std::vector<PreparedSpot> spots_;
     std::vector<Arrival> arrivals_;
@@ -220,8 +238,6 @@ Predicted predict(std::span<const SpotObservation> spots, const CorrectionOption
 std::vector<Text> name_directions(const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& xi,
                                   const Eigen::Vector3d& centroid, double spread);
 
-// The robots' covariances that were found to be some, by spot: they are the same part after part, and looking costs.
-using Accepted = std::vector<Matrix6>;
 // Checks everything that solve_region and plan_region refuse. `accepted`: from call to call; may be null.
 Expected<void> check_region(std::span<const SpotObservation> spots, const CorrectionOptions& options,
                             bool measured, Accepted* accepted = nullptr);

@@ -43,5 +43,17 @@ TEST(FieldScale, PlacesThatDoNotTellGiveNothing) {
     EXPECT_EQ(field_scale(line, Eigen::MatrixXd::Identity(6, 6)).shear_sigma, 0);
 }
 
+TEST(FieldScale, OfTwoThatHoldTheSmallerUnlessOneIsShown) {
+    const FieldScale plate{{1e-4, 3e-4}, 2e-4, false}, cuts{{7e-4, 1e-4}, 6e-4, false};
+    const FieldScale both = better_known(plate, cuts);
+    EXPECT_EQ(both.scale_sigma, Eigen::Vector2d(1e-4, 1e-4));
+    EXPECT_EQ(both.shear_sigma, 2e-4);
+    const FieldScale shown{{5e-3, 1e-3}, 6e-4, true};
+    EXPECT_EQ(better_known(plate, shown).scale_sigma, shown.scale_sigma);
+    EXPECT_EQ(better_known(shown, plate).scale_sigma, shown.scale_sigma);
+    EXPECT_EQ(better_known({}, cuts).scale_sigma, cuts.scale_sigma);
+    EXPECT_EQ(better_known(cuts, {}).shear_sigma, cuts.shear_sigma);
+}
+
 }  // namespace
 }  // namespace seamwright

@@ -6,7 +6,7 @@
 namespace seamwright {
 namespace {
 
-Text mend(const BudgetRow& row) {
+Text mend(const BudgetRow& row, bool robot_measured) {
     const std::string& of = row.owner;
     switch (row.source) {
         case ErrorSource::feature:
@@ -18,9 +18,13 @@ Text mend(const BudgetRow& row) {
                              "more shape, or put it where the contour is sharper",
                              of, row.spot_id);
         case ErrorSource::stated:
-            return Text(
-                "the spots' own sigma is typed: measure the robot (measure-robot), which then stands in its "
-                "place, and lower it");
+            return robot_measured
+                       ? Text(
+                             "the spots' own sigma is typed and stands beside the measured robot: what it "
+                             "held for the robot counts twice; lower it")
+                       : Text(
+                             "the spots' own sigma is typed: measure the robot (measure-robot), which then "
+                             "stands in its place, and lower it");
         case ErrorSource::travel:
             return Text(
                 "robot {}: stand still at the trigger, or measure the jitter (measure-trigger), which takes "
@@ -82,9 +86,13 @@ std::vector<Mending> mendings(const RegionBudget& budget) {
     std::vector<Mending> all;
     const MeasurandBudget* m = worst_across_bead(budget);
     if (!m) return all;
+    const bool robot_measured = std::any_of(m->rows.begin(), m->rows.end(), [](const BudgetRow& row) {
+        return row.source == ErrorSource::robot_run;
+    });
     for (const BudgetRow& row : m->rows)
         if (row.share >= kWorthMending)
-            all.push_back({row.source, mend(row), row.share, m->u * std::sqrt(std::max(0.0, 1 - row.share))});
+            all.push_back({row.source, mend(row, robot_measured), row.share,
+                           m->u * std::sqrt(std::max(0.0, 1 - row.share))});
     std::stable_sort(all.begin(), all.end(),
                      [](const Mending& a, const Mending& b) { return a.share > b.share; });
     return all;

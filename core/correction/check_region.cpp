@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kFarthestMm = 1e7;
 // Priors wider than these are none, and the first order would not hold: standard deviations.
-constexpr double kLargestMm = 1000, kLargestRad = 0.5, kLargestScale = 0.1;
+constexpr double kLargestMm = 1000, kLargestRad = 0.5, kLargestScale = 0.1, kLargestShare = 10;
 
 bool is_pose(const Pose& pose) {
     const Eigen::Matrix3d r = pose.linear();
@@ -26,16 +26,17 @@ Text where(std::size_t n, const SpotObservation& spot, const char* field) {
 constexpr const char* kNoCovariance =
     "the covariance is not finite, not symmetric, negative in some direction or too large";
 bool covariance_of_mm(const Eigen::Matrix2d& c) {
-    return semidefinite(c) && c.diagonal().maxCoeff() <= kLargestMm * kLargestMm;
+    return semidefinite_xz(c) && c.diagonal().maxCoeff() <= kLargestMm * kLargestMm;
 }
 bool covariance_of_pose(const Matrix6& c) {
     return (definite(c) || semidefinite(c)) && c.diagonal().head<3>().maxCoeff() <= kLargestMm * kLargestMm &&
            c.diagonal().tail<3>().maxCoeff() <= kLargestRad * kLargestRad;
 }
 
-Expected<void> check_sensors(std::span<const SpotObservation> spots,
-                             const std::vector<SensorPrior>& sensors) {
-    for (std::size_t i = 0; i < sensors.size(); ++i) {
+Expected<void> check_sensors(std::span<const SpotObservation> spots, const std::vector<SensorPrior>& sensors,
+                             const Accepted* accepted) {
+    const bool known = accepted && same_priors(accepted->sensors, sensors);
+    for (std::size_t i = 0; i < sensors.size() && !known; ++i) {
         const SensorPrior& p = sensors[i];
         const auto at = [&](const char* field) { return Text("sensors \"{}\" {}", p.id, field); };
         if (p.id.empty())
@@ -55,6 +56,13 @@ Expected<void> check_sensors(std::span<const SpotObservation> spots,
         if (!sigma(p.shear_sigma))
             return input_error("the sigma of the shear is negative, not finite or above 0.1",
                                at("shear_sigma"), "give a share, e.g. 0.001 for 0.1 %");
+        if (!(p.latency_sigma >= 0 && p.latency_sigma <= kLargestShare) ||
+            !(p.speed_sigma >= 0 && p.speed_sigma <= kLargestShare))
+            return input_error("the sigma of the latency or of the speed is negative, not finite or above 10",
+                               at("speed_sigma"), "give a share, e.g. 0.1 for a tenth");
+        if (!(p.drift_sigma_mm.minCoeff() >= 0 && p.drift_sigma_mm.maxCoeff() <= kLargestMm))
+            return input_error("the sigma of the drift is negative, not finite or above 1000 mm",
+                               at("drift_sigma_mm"), "give mm along the sensor's axes");
     }
     for (std::size_t n = 0; n < spots.size(); ++n) {
         const SpotObservation& s = spots[n];
@@ -70,11 +78,19 @@ Expected<void> check_sensors(std::span<const SpotObservation> spots,
     return {};
 }
 
+// As it was accepted before at the same place.
+bool known(Accepted* accepted, std::size_t n, const Matrix6& covariance) {
+    if (!accepted) return false;
+    Accepted::Robot& robot = accepted->robots[n];
+    robot.same = robot.revision > 0 && same_bits(robot.covariance, covariance);
+    return robot.same;
+}
+
 tl::unexpected<Error> twice(const std::string& id) {
     return input_error(Text("the spot id \"{}\" occurs twice", id), "spots", "give every spot its own id");
 }
 
-Expected<void> check_spot(std::size_t n, const SpotObservation& s, bool measured) {
+Expected<void> check_spot(std::size_t n, const SpotObservation& s, bool measured, Accepted* accepted) {
     const auto bad_point = [](const Eigen::Vector3d& p) {
         return !p.allFinite() || p.cwiseAbs().maxCoeff() > kFarthestMm;
     };
@@ -118,13 +134,17 @@ Expected<void> check_spot(std::size_t n, const SpotObservation& s, bool measured
     if (s.reference_covariance_mm2 && !covariance_of_mm(*s.reference_covariance_mm2))
         return input_error(kNoCovariance, where(n, s, "reference_covariance_mm2"),
                            "give [[xx, xz], [xz, zz]] in mm^2, symmetric and without a negative variance");
-    if (s.robot_covariance && !covariance_of_pose(*s.robot_covariance))
+    if (s.robot_covariance && !known(accepted, n, *s.robot_covariance) &&
+        !covariance_of_pose(*s.robot_covariance))
         return input_error(kNoCovariance, where(n, s, "robot_covariance"),
                            "give six rows of translation (mm) and rotation vector (rad), symmetric and "
                            "without a negative variance");
     if (s.reference_arrivals < 1)
         return input_error(Text("the reference is the mean of {} arrivals", s.reference_arrivals),
                            where(n, s, "reference_arrivals"), "give 1 or more");
+    if (!(std::abs(s.latency_travel_mm) <= kLargestMm))
+        return input_error("the travel in the latency is not finite or above 1000 mm",
+                           where(n, s, "latency_travel_mm"), "give latency times speed in mm");
     if (s.curve) {
         const ContourCurve& c = *s.curve;
         if (!c.x_coefficients.allFinite() || !c.z_coefficients.allFinite() ||
@@ -138,8 +158,8 @@ Expected<void> check_spot(std::size_t n, const SpotObservation& s, bool measured
 
 }  // namespace
 
-Expected<void> check_region(std::span<const SpotObservation> spots, const CorrectionOptions& o,
-                            bool measured) {
+Expected<void> check_region(std::span<const SpotObservation> spots, const CorrectionOptions& o, bool measured,
+                            Accepted* accepted) {
     if (spots.empty())
         return input_error("there are no spots", "spots", "give at least three in different orientations");
     if (std::none_of(o.free.begin(), o.free.end(), [](bool f) { return f; }))
@@ -154,10 +174,16 @@ Expected<void> check_region(std::span<const SpotObservation> spots, const Correc
                            "use e.g. 0.001");
     if (o.max_iterations < 1)
         return input_error("at least one iteration is needed", "max_iterations", "use e.g. 50");
-    for (std::size_t n = 0; n < spots.size(); ++n) {
-        SEAM_OK(check_spot(n, spots[n], measured));
-    }
-    SEAM_OK(check_sensors(spots, o.sensors));
+    if (!o.workobject_covariance.isZero(0) && !covariance_of_pose(o.workobject_covariance))
+        return input_error(kNoCovariance, "workobject_covariance",
+                           "give six rows of translation (mm) and rotation vector (rad), symmetric and "
+                           "without a negative variance");
+    if (!(o.robot_drift_sigma_mm >= 0 && o.robot_drift_sigma_mm <= kLargestMm))
+        return input_error("the sigma of the robot's drift is negative, not finite or above 1000 mm",
+                           "robot_drift_sigma_mm", "give mm");
+    if (accepted) accepted->robots.resize(spots.size());
+    for (std::size_t n = 0; n < spots.size(); ++n) SEAM_OK(check_spot(n, spots[n], measured, accepted));
+    SEAM_OK(check_sensors(spots, o.sensors, accepted));
     // Few spots are compared pair by pair, which needs no memory; many are sorted.
     if (spots.size() <= 64) {
         for (std::size_t n = 0; n < spots.size(); ++n) {
@@ -171,6 +197,15 @@ Expected<void> check_region(std::span<const SpotObservation> spots, const Correc
         std::sort(ids.begin(), ids.end());
         const auto same = std::adjacent_find(ids.begin(), ids.end());
         if (same != ids.end()) return twice(std::string(*same));
+    }
+    if (accepted) {
+        for (std::size_t n = 0; n < spots.size(); ++n) {
+            Accepted::Robot& robot = accepted->robots[n];
+            if (!spots[n].robot_covariance || robot.same) continue;
+            robot.covariance = *spots[n].robot_covariance;
+            robot.revision = ++accepted->revisions;
+        }
+        if (!same_priors(accepted->sensors, o.sensors)) accepted->sensors = o.sensors;
     }
     return {};
 }

@@ -34,19 +34,23 @@ namespace correction {
 template <class T>
 void report_spread(const RegionSystem& system, const Spread& spread, const Observability& seen,
                    const State& state, const RegionSystem::Parts* parts, T& out) {
-    const auto outer = [&](const Matrix6& xi, Matrix6& covariance, Eigen::Vector3d& xyz_mm,
-                           Eigen::Vector3d& abc_deg) {
-        system.outer(xi, state, covariance, xyz_mm, abc_deg);
-        abc_deg *= deg_from_rad(1);
-    };
     out.covariance_systematic.setZero();
     out.sigma_systematic = {};
     if (spread.regular) {
-        outer(spread.covariance, out.covariance, out.sigma_xyz_mm, out.sigma_abc_deg);
+        const Eigen::Matrix3d to_abc = system.abc_from_rotation(state);
+        const auto sigmas = [&](const Matrix6& tangent, Eigen::Vector3d& xyz_mm, Eigen::Vector3d& abc_deg) {
+            RegionSystem::sigmas(tangent, to_abc, xyz_mm, abc_deg);
+            abc_deg *= deg_from_rad(1);
+        };
+        out.covariance = system.tangent_of(
+            system.adds() ? Matrix6(spread.covariance + system.added(state).sum()) : spread.covariance,
+            state);
+        sigmas(out.covariance, out.sigma_xyz_mm, out.sigma_abc_deg);
         if (parts) {
-            outer(parts->random, out.covariance_random, out.sigma_random.xyz_mm, out.sigma_random.abc_deg);
-            outer(parts->systematic, out.covariance_systematic, out.sigma_systematic.xyz_mm,
-                  out.sigma_systematic.abc_deg);
+            out.covariance_systematic = system.tangent_of(parts->systematic, state);
+            out.covariance_random = out.covariance - out.covariance_systematic;
+            sigmas(out.covariance_random, out.sigma_random.xyz_mm, out.sigma_random.abc_deg);
+            sigmas(out.covariance_systematic, out.sigma_systematic.xyz_mm, out.sigma_systematic.abc_deg);
         }
     } else {
         // Singular: infinite where a degree of freedom takes part in an undetermined direction, nothing known
@@ -79,6 +83,7 @@ template void report_spread(const RegionSystem&, const Spread&, const Observabil
 
 struct RegionSolver::Impl {
     RegionSystem taught, system;
+    Accepted accepted;
     WrongSpotSearch search;
     std::vector<double> factor;
     RegionSystem::Fit fit;
@@ -161,7 +166,7 @@ struct RegionSolver::Impl {
 
     Expected<void> solve(std::span<const SpotObservation> spots, const CorrectionOptions& options,
                          RegionCorrection& r) {
-        SEAM_OK(check_region(spots, options, true));
+        SEAM_OK(check_region(spots, options, true, &accepted));
         r.status = CorrectionStatus::not_converged;
         r.displacement = {};
         r.covariance.setZero();
@@ -178,7 +183,7 @@ struct RegionSolver::Impl {
         r.iterations = 0;
 
         factor.assign(spots.size(), 1.0);
-        system.load(spots, options, false);
+        system.load(spots, options, false, &accepted);
         fit.clear();
 
         int observed = 0;
@@ -187,9 +192,9 @@ struct RegionSolver::Impl {
         system.fit(factor, fit);
         Verdict verdict = Verdict::agree;
         Spread spread = fit.converged ? system.spread(fit.lin, fit.state) : Spread{};
-        Agreement a = agreement(system, fit, spread, factor);
-        const bool agreed = fit.converged && a.plausible &&
-                            a.smallest_p >= options.outlier_significance / static_cast<double>(spots.size());
+        const double level = options.outlier_significance / static_cast<double>(spots.size());
+        Agreement a = agreement(system, fit, spread, factor, level);
+        const bool agreed = fit.converged && a.plausible && a.smallest_p >= level;
         if (!agreed || r.redundancy < 6 || !system.surely_observable(spread)) {
             // Judged on the taught geometry: a wild measure that nothing contradicts must not lend the region
             // a lever that it does not have.
@@ -229,11 +234,12 @@ struct RegionSolver::Impl {
             return {};
         }
         if (system.repeats()) {
-            const RegionSystem::Parts parts = system.parts(fit.lin, fit.shared, fit.state, factor, spread);
+            const RegionSystem::Parts parts = system.parts(fit.shared, fit.state, factor, spread);
             report_spread(system, spread, seen, fit.state, &parts, r);
         } else {
             report_spread(system, spread, seen, fit.state, nullptr, r);
         }
+        if (system.adds()) spread.covariance += system.added(fit.state).sum();
         r.sigma_at_spots_mm = system.weakest_sigma_mm(spread);
         r.displacement.workobject_from_movedworkobject = fit.state.pose();
         r.status = CorrectionStatus::ok;

@@ -31,12 +31,22 @@
 //     reference, one per spot and all parts:       de_n = dr
 //     robot, W_n Exp(rho, theta), one per arrival: de_n = -(rho + theta x r_n) when taught,
 //                                                         R_A (rho + theta x m_n) in the run
-// The first two vanish where the part has not moved and grow with the displacement. They are unknowns beside
-// D in the normal equations, with their priors, and eliminated (Schur complement), so that what the spots
-// tell about them is used; the others are independent from spot to spot and join the covariance of the spot.
-// The robot's errors take R_A = I. The covariance comes in two parts that add up: `random`, anew with every
-// part (noise, travel, the arrivals of the run), and `systematic`, the same for all parts (hand-eye, scale,
-// shear, reference, the taught arrivals). With priors of 0 everything is as without them, bit for bit.
+//     latency, the cut lies l_n = latency times speed further along the travel e_y, one share per sensor:
+//                           de_n = l_n (I - R_A) e_y
+//     speed of the run against that of the teaching, one share per sensor:
+//                           de_n = -l_n R_A e_y
+//     drift of the sensor since it was last checked, along its axes, one per sensor:
+//                           de_n = -R_A delta
+// Hand-eye, scale, shear and latency vanish where the part has not moved and grow with the displacement; the change of
+// speed vanishes there as long as the contour runs along the travel. What a sensor's spots share is unknown beside
+// D in the normal equations, with its prior, and eliminated (Schur complement), so that what the spots
+// tell about it is used; reference and robot are independent from spot to spot and join the covariance of the spot.
+// The robot's errors take R_A = I. Two terms no spot can show, and they are added to D's own covariance: a robot
+// that has drifted as a whole, D <- T(delta) D, and a path that is laid in another work object than is measured in,
+// D <- Exp(eta) D Exp(-eta), 0 where the part has not moved. The covariance comes in two parts that add up:
+// `random`, anew with every
+// part (noise, travel, the arrivals of the run), and `systematic`, the same for all parts (all others). With priors
+// of 0 everything is as without them, bit for bit.
 //
 // Observability. A displacement is judged by what it does to the spots, not to the origin of the work object,
 // which may lie metres away: it is written as translation of the spots' centroid (mm) and rotation (rad), the
@@ -109,6 +119,9 @@ struct SpotObservation {
     // Of workobject_from_sensor as one arrival reaches it; tangent of pose.h.
     std::optional<Matrix6> robot_covariance;
     int reference_arrivals = 1;  // independent ones that reference_mm is the mean of
+    // What the sensor travels from the instant whose pose the controller tells to the exposure, along its Y: latency times
+    // speed. It is in reference and measure alike, and taken off neither.
+    double latency_travel_mm = 0;
 };
 
 // What one sensor errs by, the same at all of its spots; one standard deviation.
@@ -119,6 +132,11 @@ struct SensorPrior {
     Matrix6 hand_eye_covariance = Matrix6::Zero();
     Eigen::Vector2d scale_sigma = Eigen::Vector2d::Zero();  // of x and z, share: 0.001 is 1 mm on a metre
     double shear_sigma = 0;                                 // of x against z
+    double latency_sigma = 0;  // share of SpotObservation::latency_travel_mm; 1: the whole of it
+    // Of the share by which the speed at the spots differs from that of the teaching (override): 0.1 is a tenth.
+    double speed_sigma = 0;
+    // Of the sensor's drift since it was last checked, along each of its axes.
+    Eigen::Vector3d drift_sigma_mm = Eigen::Vector3d::Zero();
 };
 // The same from the covariance of flange_from_sensor in the tangent of pose.h (axes of the flange).
 Matrix6 hand_eye_along_sensor(const Pose& flange_from_sensor, const Matrix6& covariance);
@@ -147,6 +165,10 @@ struct CorrectionOptions {
     double outlier_significance = 1e-3;
     int max_iterations = 50;
     std::vector<SensorPrior> sensors;
+    // (rho, theta) of workobject_measured Exp(rho, theta) that the path is laid in: translation (mm), rotation vector
+    // (rad), along the work object's axes. 0: measured and laid in the same.
+    Matrix6 workobject_covariance = Matrix6::Zero();
+    double robot_drift_sigma_mm = 0;  // of the robot as a whole since the last check, along each axis
 };
 
 enum class CorrectionStatus {
@@ -230,7 +252,7 @@ class RegionSolver {
 // identity.
 struct RegionPlan {
     CorrectionStatus status = CorrectionStatus::ok;  // ok or under_determined
-    // As in RegionCorrection. What all spots of a sensor share is 0 here, where the part has not moved
+    // As in RegionCorrection. Of what all spots of a sensor share only its drift shows here, where the part has not moved
     // (predicted_covariance() of forecast.h takes a displacement).
     Matrix6 covariance = Matrix6::Zero();
     Matrix6 covariance_random = Matrix6::Zero(), covariance_systematic = Matrix6::Zero();

@@ -1,5 +1,6 @@
 #include "core/correction/nuisance.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace seamwright {
@@ -39,6 +40,13 @@ bool definite(const Matrix6& c) {
     return true;
 }
 
+bool semidefinite_xz(const Eigen::Matrix2d& c) {
+    if (!(c(0, 0) >= 0 && c(1, 1) >= 0)) return false;
+    const double size = std::sqrt(c(0, 0)) * std::sqrt(c(1, 1));
+    return std::isfinite(size) && std::abs(c(0, 1) - c(1, 0)) <= kRounding * size &&
+           std::abs(c(0, 1)) <= (1 + kRounding) * size;
+}
+
 bool semidefinite(const Eigen::Ref<const Eigen::MatrixXd>& c) {
     constexpr Eigen::Index kMost = 6;
     const Eigen::Index n = c.rows();
@@ -73,7 +81,17 @@ bool semidefinite(const Eigen::Ref<const Eigen::MatrixXd>& c) {
 }
 
 bool is_zero(const SensorPrior& prior) {
-    return prior.hand_eye_covariance.isZero(0) && prior.scale_sigma.isZero(0) && prior.shear_sigma == 0;
+    return prior.hand_eye_covariance.isZero(0) && prior.scale_sigma.isZero(0) && prior.shear_sigma == 0 &&
+           prior.latency_sigma == 0 && prior.speed_sigma == 0 && prior.drift_sigma_mm.isZero(0);
+}
+
+bool same_priors(const std::vector<SensorPrior>& a, const std::vector<SensorPrior>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const SensorPrior& p, const SensorPrior& q) {
+        return p.id == q.id && same_bits(p.hand_eye_covariance, q.hand_eye_covariance) &&
+               p.scale_sigma == q.scale_sigma && p.shear_sigma == q.shear_sigma &&
+               p.latency_sigma == q.latency_sigma && p.speed_sigma == q.speed_sigma &&
+               p.drift_sigma_mm == q.drift_sigma_mm;
+    });
 }
 
 SharedRoot root_of(const SensorPrior& prior) {
@@ -93,89 +111,82 @@ SharedRoot root_of(const SensorPrior& prior) {
         }
     }
     out.scale << prior.scale_sigma, prior.shear_sigma;
+    out.latency = prior.latency_sigma;
+    out.speed = prior.speed_sigma;
+    out.drift = prior.drift_sigma_mm;
+    const bool more = out.latency > 0 || out.speed > 0 || !out.drift.isZero(0);
+    out.count = more ? kShared : out.scale.isZero(0) ? kScaleAt : kLatencyAt;
     return out;
 }
 
-SharedVector shared_row(const SharedGeometry& spot, const SharedRoot& root, int i,
-                        const Eigen::Vector3d& axis, const Eigen::Vector3d& y) {
-    // Row i of R_A.
-    const Eigen::Vector3d turned = spot.axes.transpose().lazyProduct(axis);
+void shared_row(const SharedGeometry& spot, const SharedRoot& root, const Eigen::Vector3d& f,
+                const Eigen::Vector3d& axis, const Eigen::Vector3d& y, double* u) {
+    const Eigen::Vector3d t = spot.axes.transpose().lazyProduct(axis);  // f R_A
     const Eigen::Vector3d& m = spot.measured;
     const Eigen::Vector3d& r = spot.reference;
-    Vector6 b;
-    b.head<3>() = -turned;
-    b.coeffRef(i) += 1;
-    b.tail<3>() = turned.cross(m);
-    // - e_i x y.
-    const int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
-    b.coeffRef(3 + j) += y.coeff(k);
-    b.coeffRef(3 + k) -= y.coeff(j);
-    SharedVector u;
+    // f (rho + theta x y) - t (rho + theta x m).
+    double b[6];
+    for (int i = 0; i < 3; ++i) b[i] = f.coeff(i) - t.coeff(i);
+    b[3] = t.y() * m.z() - t.z() * m.y() - f.y() * y.z() + f.z() * y.y();
+    b[4] = t.z() * m.x() - t.x() * m.z() - f.z() * y.x() + f.x() * y.z();
+    b[5] = t.x() * m.y() - t.y() * m.x() - f.x() * y.y() + f.y() * y.x();
     for (int column = 0; column < 6; ++column) {
         double sum = 0;
-        for (int row = column; row < 6; ++row) sum += b.coeff(row) * root.hand_eye.coeff(row, column);
-        u.coeffRef(column) = sum;
+        for (int row = column; row < 6; ++row) sum += b[row] * root.hand_eye.coeff(row, column);
+        u[column] = sum;
     }
-    u.coeffRef(6) = root.scale.x() * ((i == 0 ? r.x() : 0.0) - turned.x() * m.x());
-    u.coeffRef(7) = root.scale.y() * ((i == 2 ? r.z() : 0.0) - turned.z() * m.z());
-    u.coeffRef(8) = root.scale.z() * ((i == 0 ? r.z() : 0.0) - turned.x() * m.z());
-    return u;
+    if (root.count == kScaleAt) return;
+    u[6] = root.scale.x() * (f.x() * r.x() - t.x() * m.x());
+    u[7] = root.scale.y() * (f.z() * r.z() - t.z() * m.z());
+    u[kShearAt] = root.scale.z() * (f.x() * r.z() - t.x() * m.z());
+    if (root.count == kLatencyAt) return;
+    u[kLatencyAt] = root.latency * spot.latency_travel * (f.y() - t.y());
+    u[kSpeedAt] = -root.speed * spot.latency_travel * t.y();
+    for (int c = 0; c < 3; ++c) u[kDriftAt + c] = -root.drift.coeff(c) * t.coeff(c);
 }
 
-Eigen::Matrix3d arrival_covariance(const Pose& pose, const Matrix6& c, const Eigen::Vector3d& p,
-                                   bool travel) {
-    // Along an axis a of the sensor: a . (dt + dw x R p) = a . dt + (R p x a) . dw.
-    const Eigen::Vector3d lever = pose.linear().lazyProduct(p);
-    Eigen::Matrix<double, 6, 3> along, image;
-    for (const int i : {0, 2, 1}) {
-        if (i == 1 && !travel) break;
-        along.col(i).head<3>() = pose.linear().col(i);
-        along.col(i).tail<3>() = lever.cross(pose.linear().col(i));
-        image.col(i) = c.lazyProduct(along.col(i));
-    }
-    Eigen::Matrix3d out = Eigen::Matrix3d::Zero();
-    for (const int i : {0, 2, 1}) {
-        if (i == 1 && !travel) break;
-        for (const int k : {0, 2, 1}) {
-            if (k == 1 && !travel) break;
-            out(i, k) = along.col(i).dot(image.col(k));
+Matrix6 arrival_along_sensor(const Pose& pose, const Matrix6& c) {
+    // (dt, dw) of the work object: rho = R^T dt, theta = R^T dw.
+    const Eigen::Matrix3d& r = pose.linear();
+    Matrix6 out;
+    for (int i = 0; i < 2; ++i)
+        for (int k = 0; k < 2; ++k) {
+            const Eigen::Matrix3d half = r.transpose().lazyProduct(c.block<3, 3>(3 * i, 3 * k));
+            out.block<3, 3>(3 * i, 3 * k) = half.lazyProduct(r);
         }
-    }
     return out;
 }
 
-void eliminate(SharedBlock& b) {
-    auto& l = b.lower;
-    for (int j = 0; j < kShared; ++j) {
-        double pivot = l.coeff(j, j);
-        for (int k = 0; k < j; ++k) pivot -= l.coeff(j, k) * l.coeff(j, k);
-        const double root = std::sqrt(pivot);  // of a matrix whose eigenvalues are at least 1
-        l.coeffRef(j, j) = root;
-        b.inverse.coeffRef(j) = 1 / root;
-        for (int i = j + 1; i < kShared; ++i) {
-            double sum = l.coeff(i, j);
-            for (int k = 0; k < j; ++k) sum -= l.coeff(i, k) * l.coeff(j, k);
-            l.coeffRef(i, j) = sum * b.inverse.coeff(j);
-        }
+CovarianceXz arrival_xz(const Matrix6& c, const Eigen::Vector3d& p) {
+    // x moves by rho_x + theta_y p_z - theta_z p_y, z by rho_z + theta_x p_y - theta_y p_x.
+    const double px = p.x(), py = p.y(), pz = p.z();
+    CovarianceXz out;
+    out.xx = c.coeff(0, 0) + pz * pz * c.coeff(4, 4) + py * py * c.coeff(5, 5) +
+             2 * (pz * c.coeff(0, 4) - py * c.coeff(0, 5) - pz * py * c.coeff(4, 5));
+    out.zz = c.coeff(2, 2) + py * py * c.coeff(3, 3) + px * px * c.coeff(4, 4) +
+             2 * (py * c.coeff(2, 3) - px * c.coeff(2, 4) - px * py * c.coeff(3, 4));
+    out.zx = c.coeff(0, 2) + py * c.coeff(0, 3) - px * c.coeff(0, 4) +
+             pz * (c.coeff(4, 2) + py * c.coeff(4, 3) - px * c.coeff(4, 4)) -
+             py * (c.coeff(5, 2) + py * c.coeff(5, 3) - px * c.coeff(5, 4));
+    return out;
+}
+
+Eigen::Matrix3d arrival_covariance(const Matrix6& c, const Eigen::Vector3d& p, bool travel) {
+    // A point moves by rho + theta x p = rho - [p] theta.
+    Eigen::Matrix3d out = Eigen::Matrix3d::Zero();
+    if (travel) {
+        const Eigen::Matrix3d lever = skew(p);
+        const Eigen::Matrix3d rho_theta =
+            c.topRightCorner<3, 3>() - lever.lazyProduct(c.bottomRightCorner<3, 3>());
+        out = c.topLeftCorner<3, 3>() - lever.lazyProduct(c.bottomLeftCorner<3, 3>());
+        out -= rho_theta.lazyProduct(lever.transpose());
+        return out;
     }
-    b.gain = b.cross;
-    b.value = -b.gradient;
-    for (int i = 0; i < kShared; ++i) {
-        for (int k = 0; k < i; ++k) {
-            b.gain.col(i) -= l.coeff(i, k) * b.gain.col(k);
-            b.value.coeffRef(i) -= l.coeff(i, k) * b.value.coeff(k);
-        }
-        b.gain.col(i) *= b.inverse.coeff(i);
-        b.value.coeffRef(i) *= b.inverse.coeff(i);
-    }
-    for (int i = kShared - 1; i >= 0; --i) {
-        for (int k = i + 1; k < kShared; ++k) {
-            b.gain.col(i) -= l.coeff(k, i) * b.gain.col(k);
-            b.value.coeffRef(i) -= l.coeff(k, i) * b.value.coeff(k);
-        }
-        b.gain.col(i) *= b.inverse.coeff(i);
-        b.value.coeffRef(i) *= b.inverse.coeff(i);
-    }
+    const CovarianceXz xz = arrival_xz(c, p);
+    out(0, 0) = xz.xx;
+    out(0, 2) = out(2, 0) = xz.zx;
+    out(2, 2) = xz.zz;
+    return out;
 }
 
 Eigen::Matrix3d left_uncertain(const SharedBlock& b, const SharedColumns& columns) {
@@ -183,7 +194,7 @@ Eigen::Matrix3d left_uncertain(const SharedBlock& b, const SharedColumns& column
     Eigen::Array<double, 2, kShared> xz;
     Eigen::Array2d xx = Eigen::Array2d::Zero();
     double cross = 0;
-    for (int i = 0; i < kShared; ++i) {
+    for (int i = 0; i < b.count; ++i) {
         Eigen::Array2d v(columns.coeff(i, 0), columns.coeff(i, 2));
         for (int k = 0; k < i; ++k) v -= b.lower.coeff(i, k) * xz.col(k);
         v *= b.inverse.coeff(i);
@@ -197,13 +208,17 @@ Eigen::Matrix3d left_uncertain(const SharedBlock& b, const SharedColumns& column
     out(0, 2) = out(2, 0) = cross;
     if (columns.col(1).isZero(0)) return out;
     SharedVector y = columns.col(1);
-    for (int i = 0; i < kShared; ++i) {
+    double yy = 0, xy = 0, zy = 0;
+    for (int i = 0; i < b.count; ++i) {
         for (int k = 0; k < i; ++k) y.coeffRef(i) -= b.lower.coeff(i, k) * y.coeff(k);
         y.coeffRef(i) *= b.inverse.coeff(i);
+        yy += y.coeff(i) * y.coeff(i);
+        xy += xz(0, i) * y.coeff(i);
+        zy += xz(1, i) * y.coeff(i);
     }
-    out(1, 1) = y.squaredNorm();
-    out(0, 1) = out(1, 0) = xz.row(0).matrix().dot(y.transpose());
-    out(2, 1) = out(1, 2) = xz.row(1).matrix().dot(y.transpose());
+    out(1, 1) = yy;
+    out(0, 1) = out(1, 0) = xy;
+    out(2, 1) = out(1, 2) = zy;
     return out;
 }
 

@@ -118,6 +118,7 @@ SpotObservation spot_across(const Eigen::Vector3d& position, const Eigen::Vector
     s.reference_covariance_mm2 = like.reference_covariance_mm2;
     s.robot_covariance = like.robot_covariance;
     s.reference_arrivals = like.reference_arrivals;
+    s.latency_travel_mm = like.latency_travel_mm;
     s.workobject_from_sensor = make_pose(rotation_between(Eigen::Vector3d::UnitY(), edge), position);
     s.sigma_mm = sigma;
     return s;
@@ -262,10 +263,14 @@ Expected<RegionPlan> plan_region(std::span<const SpotObservation> spots, const C
     plan.unobservable = name_directions(now.seen.weak, system.centroid(), system.spread_mm());
     plan.weakest_direction = now.seen.weakest;
     plan.sigma_at_spots_mm = now.seen.weakest_sigma_mm;
-    const Spread spread = system.spread(now.lin, start);
+    Predicted taught = predict(spots, options, {});
     const RegionSystem::Parts parts =
-        system.parts(now.lin, {}, start, std::vector<double>(spots.size(), 1.0), spread);
-    report_spread(system, spread, now.seen, start, &parts, plan);
+        taught.system.parts(taught.shared, taught.state, taught.factor, taught.spread);
+    report_spread(taught.system, taught.spread, now.seen, start, &parts, plan);
+    if (taught.system.repeats() && taught.spread.regular) {
+        taught.spread.covariance += taught.system.added(start).sum();
+        plan.sigma_at_spots_mm = taught.system.weakest_sigma_mm(taught.spread);
+    }
     // Of several equally undetermined directions any mixture is as weak: then the nicely named ones are
     // listed.
     if (now.seen.singular && !plan.unobservable.empty()) {

@@ -1,5 +1,7 @@
 // The normal equations and the covariance of a measurement to come.
 
+#include <algorithm>
+
 #include "core/correction/forecast.h"
 #include "core/correction/region_system.h"
 #include "core/correction/travel.h"
@@ -18,7 +20,9 @@ Predicted predict(std::span<const SpotObservation> spots, const CorrectionOption
     const KukaAbc abc = kuka_from_rotation(d.linear());
     out.state.abc = rad_from_deg(1) * Eigen::Vector3d(abc.a_deg, abc.b_deg, abc.c_deg);
     out.factor.assign(spots.size(), 1.0);
-    if (d.matrix().isIdentity(0)) {
+    const bool drifts = std::any_of(options.sensors.begin(), options.sensors.end(),
+                                    [](const SensorPrior& p) { return !p.drift_sigma_mm.isZero(0); });
+    if (d.matrix().isIdentity(0) && !drifts) {
         out.system.load(spots, options, true);
         out.system.linearize(out.state, out.factor, out.lin);
     } else {
@@ -42,7 +46,7 @@ Expected<PredictedCovariance> predicted_covariance(std::span<const SpotObservati
     using namespace correction;
     SEAM_OK(check_region(spots, options, false));
     const Predicted p = predict(spots, options, displacement);
-    const RegionSystem::Parts parts = p.system.parts(p.lin, p.shared, p.state, p.factor, p.spread);
+    const RegionSystem::Parts parts = p.system.parts(p.shared, p.state, p.factor, p.spread);
     RegionPlan out;
     report_spread(p.system, p.spread, p.system.observability(p.lin, p.state), p.state, &parts, out);
     return PredictedCovariance{out.covariance, out.covariance_random, out.covariance_systematic};

@@ -40,19 +40,71 @@ void fold(const SpotObservation& in, const LocalTerms& local, PreparedSpot& s, E
     s.systematic = half.lazyProduct(flat.transpose()) / variance;
 }
 
+// The same of the usual spot, straight and x and z observed alike: two by two. False where nothing errs.
+bool fold_xz(const SpotObservation& in, const Matrix6* arrival, const Eigen::Vector3d& measured_mm,
+             PreparedSpot& s, Eigen::Matrix3d& flat) {
+    const double variance = in.sigma_mm * in.sigma_mm;
+    CovarianceXz run, same;
+    if (arrival) {
+        run = arrival_xz(*arrival, measured_mm);
+        const CovarianceXz taught = arrival_xz(*arrival, in.reference_mm);
+        const double share = 1 / static_cast<double>(in.reference_arrivals);
+        same = {share * taught.xx, share * taught.zx, share * taught.zz};
+    }
+    if (in.reference_covariance_mm2) {
+        const Eigen::Matrix2d& c = *in.reference_covariance_mm2;
+        if (!arrival && c.isZero(0)) return false;
+        same.xx += c.coeff(0, 0);
+        same.zx += c.coeff(1, 0);
+        same.zz += c.coeff(1, 1);
+    } else if (!arrival) {
+        return false;
+    }
+    double nxx = variance, nzx = 0, nzz = variance;
+    if (in.covariance_mm2) {
+        nxx = in.covariance_mm2->coeff(0, 0);
+        nzx = in.covariance_mm2->coeff(1, 0);
+        nzz = in.covariance_mm2->coeff(1, 1);
+    }
+    // Cholesky (a, 0; c, d), and its inverse.
+    const double a = std::sqrt(nxx + run.xx + same.xx), per_a = 1 / a;
+    const double c = (nzx + run.zx + same.zx) * per_a;
+    const double d = std::sqrt(nzz + run.zz + same.zz - c * c);
+    const double by = 1 / in.sigma_mm, p = in.sigma_mm * per_a, r = in.sigma_mm / d, q = -c * per_a * r;
+    s.shape.coeffRef(0, 0) = a * by;
+    s.shape.coeffRef(2, 0) = c * by;
+    s.shape.coeffRef(2, 2) = d * by;
+    flat.coeffRef(0, 0) = p;
+    flat.coeffRef(2, 0) = q;
+    flat.coeffRef(2, 2) = r;
+    s.repeats = same.xx != 0 || same.zx != 0 || same.zz != 0;
+    // flat (xx, zx; zx, zz) flat^T / variance.
+    const double inverse = by * by, qx = q * same.xx + r * same.zx, qz = q * same.zx + r * same.zz;
+    s.systematic.setZero();
+    s.systematic.coeffRef(0, 0) = p * p * same.xx * inverse;
+    s.systematic.coeffRef(2, 0) = s.systematic.coeffRef(0, 2) = p * qx * inverse;
+    s.systematic.coeffRef(2, 2) = (q * qx + r * qz) * inverse;
+    return true;
+}
+
 }  // namespace
 
 LocalTerms local_terms(const SpotObservation& in, bool from_reference) {
+    return local_terms(in, from_reference,
+                       in.robot_covariance
+                           ? arrival_along_sensor(in.workobject_from_sensor, *in.robot_covariance)
+                           : Matrix6(Matrix6::Zero()));
+}
+
+LocalTerms local_terms(const SpotObservation& in, bool from_reference, const Matrix6& arrival) {
     LocalTerms out;
     if (in.robot_covariance && !in.robot_covariance->isZero(0)) {
         out.any = true;
-        const Pose& w = in.workobject_from_sensor;
         const bool curved = in.curve && in.weights.y() == 0;
         const bool travel = curved || in.weights.y() > 0;
-        out.run = arrival_covariance(w, *in.robot_covariance,
-                                     from_reference ? in.reference_mm : in.measured_mm, travel);
-        out.taught = arrival_covariance(w, *in.robot_covariance, in.reference_mm, travel) /
-                     static_cast<double>(in.reference_arrivals);
+        out.run = arrival_covariance(arrival, from_reference ? in.reference_mm : in.measured_mm, travel);
+        out.taught =
+            arrival_covariance(arrival, in.reference_mm, travel) / static_cast<double>(in.reference_arrivals);
         if (curved) {
             // An arrival further along the contour sees it where it runs on.
             Eigen::Matrix3d along = Eigen::Matrix3d::Identity();
@@ -85,19 +137,40 @@ Eigen::Matrix3d kept(const Eigen::Vector3d& weights, Eigen::Matrix3d covariance)
     return covariance;
 }
 
+const RegionSystem::Arrival& RegionSystem::arrival_of(std::size_t n, const SpotObservation& in,
+                                                      const Accepted* accepted) {
+    Arrival& known = arrivals_[n];
+    if (!in.robot_covariance) return known;
+    const Eigen::Matrix3d axes = in.workobject_from_sensor.linear();
+    const unsigned revision = accepted ? accepted->robots[n].revision : 0;
+    const bool same =
+        revision > 0 ? known.revision == revision : same_bits(known.covariance, *in.robot_covariance);
+    if (!same || !same_bits(known.axes, axes)) {
+        known.axes = axes;
+        known.covariance = *in.robot_covariance;
+        known.along_sensor = arrival_along_sensor(in.workobject_from_sensor, known.covariance);
+        known.revision = revision;
+        known.none = known.covariance.isZero(0);
+    }
+    return known;
+}
+
 void RegionSystem::load(std::span<const SpotObservation> spots, const CorrectionOptions& options,
-                        bool from_reference) {
+                        bool from_reference, const Accepted* accepted) {
+    if (!same_priors(options_.sensors, options.sensors)) {
+        priors_.clear();
+        prior_of_.clear();
+        for (const SensorPrior& prior : options.sensors) {
+            prior_of_.push_back(is_zero(prior) ? -1 : static_cast<int>(priors_.size()));
+            if (prior_of_.back() >= 0) priors_.push_back(root_of(prior));
+        }
+    }
     options_ = options;
     spots_.resize(spots.size());
+    arrivals_.resize(spots.size());
     binary_ = true;
     repeats_ = false;
     centroid_.setZero();
-    priors_.clear();
-    prior_of_.clear();
-    for (const SensorPrior& prior : options.sensors) {
-        prior_of_.push_back(is_zero(prior) ? -1 : static_cast<int>(priors_.size()));
-        if (prior_of_.back() >= 0) priors_.push_back(root_of(prior));
-    }
     const auto prior_index = [&](const std::string& id) {
         for (std::size_t i = 0; i < options.sensors.size(); ++i)
             if (options.sensors[i].id == id) return prior_of_[i];
@@ -109,8 +182,18 @@ void RegionSystem::load(std::span<const SpotObservation> spots, const Correction
         s.shape.setIdentity();
         Eigen::Matrix3d flat = Eigen::Matrix3d::Identity();
         s.repeats = false;
-        if (const LocalTerms local = local_terms(in, from_reference); local.any) {
+        const Arrival& arrival = arrival_of(n, in, accepted);
+        bool folded = false;
+        if (in.weights.y() == 0 && in.weights.x() > 0 && in.weights.x() == in.weights.z() && !in.curve) {
+            const bool arrives = in.robot_covariance && !arrival.none;
+            folded = fold_xz(in, arrives ? &arrival.along_sensor : nullptr,
+                             from_reference ? in.reference_mm : in.measured_mm, s, flat);
+        } else if (const LocalTerms local = local_terms(in, from_reference, arrival.along_sensor);
+                   local.any) {
             fold(in, local, s, flat);
+            folded = true;
+        }
+        if (folded) {
             repeats_ = repeats_ || s.repeats;
         } else if (in.covariance_mm2) {
             // Lower triangle of Cholesky, over sigma.
@@ -145,6 +228,7 @@ void RegionSystem::load(std::span<const SpotObservation> spots, const Correction
             s.geometry.reference = in.reference_mm;
             s.geometry.measured = from_reference ? in.reference_mm : in.measured_mm;
             s.geometry.flat = flat;
+            s.geometry.latency_travel = in.latency_travel_mm;
         }
         s.observed = 0;
         for (int i = 0; i < 3; ++i) {

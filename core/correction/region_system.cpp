@@ -339,13 +339,21 @@ Observability RegionSystem::observability(const Linearization& lin, const State&
     return out;
 }
 
-void RegionSystem::outer(const Matrix6& covariance_xi, const State& state, Matrix6& tangent,
-                         Eigen::Vector3d& sigma_xyz, Eigen::Vector3d& sigma_abc) const {
+Matrix6 RegionSystem::tangent_of(const Matrix6& covariance_xi, const State& state) const {
     Matrix6 s = Matrix6::Identity();
     s.topRightCorner<3, 3>() = skew(state.rotation * centroid_) / spread_;
     s.bottomRightCorner<3, 3>() /= spread_;
-    tangent = s * covariance_xi * s.transpose();
-    Eigen::Matrix3d to_abc = Eigen::Matrix3d::Zero();
+    Matrix6 tangent;
+    tangent = s * covariance_xi * s.transpose();  // assigned: constructed, Eigen rounds it otherwise
+    for (int i = 0; i < 3; ++i) {
+        if (options_.free[static_cast<std::size_t>(i)]) continue;
+        tangent.row(i).setZero();
+        tangent.col(i).setZero();
+    }
+    return tangent;
+}
+
+Eigen::Matrix3d RegionSystem::abc_from_rotation(const State& state) const {
     if (by_angles_) {
         // Only the free angles' columns of d(w)/d(A, B, C), so that fixed ones come out as exactly 0.
         Eigen::Matrix3d g = rotation_vector_from_abc(state.abc);
@@ -355,32 +363,32 @@ void RegionSystem::outer(const Matrix6& covariance_xi, const State& state, Matri
         for (int i = 0; i < 3; ++i)
             for (int k = 0; k < i; ++k) square(i, k) = square(k, i) = g.col(i).dot(g.col(k));
         // Unit axes: the determinant is near 0 in the gimbal lock alone.
-        if (square.determinant() > 1e-9)
-            to_abc = square.inverse() * g.transpose();
-        else
-            to_abc = least_squares(g, Eigen::Matrix3d::Identity()).x;
-    } else {
-        // Closed form of kuka_jacobian away from the gimbal lock: the axes of A, B, C are Z, the turned Y,
-        // and R X.
-        const Eigen::Vector3d x = state.rotation.col(0);
-        const double cos_b = std::hypot(x.x(), x.y());
-        if (cos_b > 1e-3) {
-            Eigen::Matrix3d axes;
-            axes << 0, -x.y() / cos_b, x.x(), 0, x.x() / cos_b, x.y(), 1, 0, x.z();
-            to_abc = axes.inverse();
-        } else {
-            to_abc = kuka_jacobian(state.rotation);
-        }
+        if (square.determinant() > 1e-9) return square.inverse() * g.transpose();
+        return least_squares(g, Eigen::Matrix3d::Identity()).x;
     }
-    for (int i = 0; i < 3; ++i) {
-        if (!options_.free[static_cast<std::size_t>(i)]) {
-            tangent.row(i).setZero();
-            tangent.col(i).setZero();
-        }
-        sigma_xyz[i] = std::sqrt(std::max(0.0, tangent(i, i)));
-    }
+    // Closed form of kuka_jacobian away from the gimbal lock: the axes of A, B, C are Z, the turned Y,
+    // and R X.
+    const Eigen::Vector3d x = state.rotation.col(0);
+    const double cos_b = std::hypot(x.x(), x.y());
+    if (!(cos_b > 1e-3)) return kuka_jacobian(state.rotation);
+    Eigen::Matrix3d axes;
+    axes << 0, -x.y() / cos_b, x.x(), 0, x.x() / cos_b, x.y(), 1, 0, x.z();
+    return axes.inverse();
+}
+
+void RegionSystem::sigmas(const Matrix6& tangent, const Eigen::Matrix3d& to_abc, Eigen::Vector3d& sigma_xyz,
+                          Eigen::Vector3d& sigma_abc) {
     const Eigen::Matrix3d abc = to_abc * tangent.bottomRightCorner<3, 3>() * to_abc.transpose();
-    for (int i = 0; i < 3; ++i) sigma_abc[i] = std::sqrt(std::max(0.0, abc(i, i)));
+    for (int i = 0; i < 3; ++i) {
+        sigma_xyz[i] = std::sqrt(std::max(0.0, tangent(i, i)));
+        sigma_abc[i] = std::sqrt(std::max(0.0, abc(i, i)));
+    }
+}
+
+void RegionSystem::outer(const Matrix6& covariance_xi, const State& state, Matrix6& tangent,
+                         Eigen::Vector3d& sigma_xyz, Eigen::Vector3d& sigma_abc) const {
+    tangent = tangent_of(covariance_xi, state);
+    sigmas(tangent, abc_from_rotation(state), sigma_xyz, sigma_abc);
 }
 
 void RegionSystem::step(State& state, const Vector6& theta, const Vector6& xi) const {

@@ -60,7 +60,9 @@ struct LocalTerms {
     Eigen::Matrix3d reference = Eigen::Matrix3d::Zero(), taught = Eigen::Matrix3d::Zero(),
                     run = Eigen::Matrix3d::Zero();
 };
-// `from_reference`: the taught point stands for the measured one.
+// `from_reference`: the taught point stands for the measured one. `arrival`: arrival_along_sensor() of the spot's, where
+// it states one.
+LocalTerms local_terms(const SpotObservation& spot, bool from_reference, const Matrix6& arrival);
 LocalTerms local_terms(const SpotObservation& spot, bool from_reference);
 // Of the noise alone.
 Eigen::Matrix3d noise_covariance(const SpotObservation& spot);
@@ -88,10 +90,24 @@ struct PreparedSpot {
     SharedGeometry geometry;
 };
 
+// What was found to be covariances, by spot and sensor: they are the same part after part, and looking costs.
+struct Accepted {
+    struct Robot {
+        Matrix6 covariance = Matrix6::Zero();
+        unsigned revision = 0;  // another with every other covariance; 0: none
+        bool same = false;      // as in the call before
+    };
+    std::vector<Robot> robots;
+    unsigned revisions = 0;
+    std::vector<SensorPrior> sensors;
+};
+
 class RegionSystem {
   public:
-    // `from_reference`: the taught points stand for the measured ones (planning).
-    void load(std::span<const SpotObservation> spots, const CorrectionOptions& options, bool from_reference);
+    // `from_reference`: the taught points stand for the measured ones (planning). `accepted`: of check_region() of the
+    // same spots, always from the same place; may be null.
+    void load(std::span<const SpotObservation> spots, const CorrectionOptions& options, bool from_reference,
+              const Accepted* accepted = nullptr);
 
     std::size_t size() const { return spots_.size(); }
     const PreparedSpot& spot(std::size_t n) const { return spots_[n]; }
@@ -129,6 +145,11 @@ class RegionSystem {
     // Covariance in the tangent of pose.h and sigma of (x, y, z) mm and (A, B, C) rad from one in xi.
     void outer(const Matrix6& covariance_xi, const State& state, Matrix6& tangent, Eigen::Vector3d& sigma_xyz,
                Eigen::Vector3d& sigma_abc) const;
+    // The tangent alone, and the sigmas of one; `abc_from_rotation` is d(A, B, C)/d(rotation vector).
+    Matrix6 tangent_of(const Matrix6& covariance_xi, const State& state) const;
+    Eigen::Matrix3d abc_from_rotation(const State& state) const;
+    static void sigmas(const Matrix6& tangent, const Eigen::Matrix3d& abc_from_rotation,
+                       Eigen::Vector3d& sigma_xyz, Eigen::Vector3d& sigma_abc);
     Vector6 tangent_from_xi(const Vector6& xi, const State& state) const;
 
     struct Fit {
@@ -142,17 +163,29 @@ class RegionSystem {
     // Levenberg-Marquardt from identity; then, where sensors have priors, Gauss-Newton steps with their errors
     // as unknowns.
     void fit(std::span<const double> factor, Fit& out) const;
-    // Residual and rows at the fit as residual() gives them, freed of the sensors' errors as estimated, and
-    // the covariance that their uncertainty leaves in the residual.
-    void cleared(std::size_t n, const Fit& fit, Eigen::Vector3d& e, Rows& rows, Eigen::Matrix3d& left) const;
+    // Residual and rows at the fit as residual() gives them, freed of the sensors' errors as estimated.
+    void cleared(std::size_t n, const Fit& fit, Eigen::Vector3d& e, Rows& rows) const;
+    // The covariance that the sensors' uncertainty leaves in that residual, and a quick upper bound of it.
+    Eigen::Matrix3d left(std::size_t n, const Fit& fit) const;
+    Eigen::Matrix3d left_at_most(std::size_t n, const Fit& fit) const;
     // The two parts of spread.covariance, in xi. `shared` may be empty where nothing is shared.
     struct Parts {
         Matrix6 random, systematic;
     };
-    Parts parts(const Linearization& lin, const Shared& shared, const State& state,
-                std::span<const double> factor, const Spread& spread) const;
+    Parts parts(const Shared& shared, const State& state, std::span<const double> factor,
+                const Spread& spread) const;
     // Some term is systematic.
-    bool repeats() const { return repeats_ || shares(); }
+    bool repeats() const { return repeats_ || shares() || adds(); }
+    // Some term adds to D itself.
+    bool adds() const {
+        return !options_.workobject_covariance.isZero(0) || options_.robot_drift_sigma_mm > 0;
+    }
+    // What no spot can show, in xi: the robot's drift, and the work object that the path is laid in.
+    struct Added {
+        Matrix6 robot_drift = Matrix6::Zero(), workobject = Matrix6::Zero();
+        Matrix6 sum() const { return robot_drift + workobject; }
+    };
+    Added added(const State& state) const;
 
   private:
     // 1 / limit for each coordinate of xi.
@@ -162,7 +195,21 @@ class RegionSystem {
     static std::array<double, 2> slopes(const PreparedSpot& spot, double travel_mm);
     void step(State& state, const Vector6& theta, const Vector6& xi) const;
 
+    template <int N>
+    void add_shared(const State& state, std::span<const double> factor, int sensor, Linearization& out,
+                    Shared& shared) const;
+
+    // What a spot states of its robot is the same part after part, and turning it costs.
+    struct Arrival {
+        Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
+        Matrix6 covariance = Matrix6::Zero(), along_sensor = Matrix6::Zero();
+        unsigned revision = 0;
+        bool none = true;
+    };
+    const Arrival& arrival_of(std::size_t n, const SpotObservation& spot, const Accepted* accepted);
+
     std::vector<PreparedSpot> spots_;
+    std::vector<Arrival> arrivals_;
     std::vector<SharedRoot> priors_;
     std::vector<int> prior_of_;  // by CorrectionOptions::sensors; -1: nothing
     bool repeats_ = false;
@@ -191,9 +238,9 @@ Predicted predict(std::span<const SpotObservation> spots, const CorrectionOption
 std::vector<Text> name_directions(const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& xi,
                                   const Eigen::Vector3d& centroid, double spread);
 
-// Checks everything that solve_region and plan_region refuse.
+// Checks everything that solve_region and plan_region refuse. `accepted`: from call to call; may be null.
 Expected<void> check_region(std::span<const SpotObservation> spots, const CorrectionOptions& options,
-                            bool measured);
+                            bool measured, Accepted* accepted = nullptr);
 
 // Fills covariance, its parts and sigmas as RegionCorrection describes them (T is that or RegionPlan), also
 // for a singular region. `parts` may be null: all is random.

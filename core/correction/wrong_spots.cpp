@@ -55,11 +55,10 @@ Studentised predicted(const RegionSystem& system, std::size_t n, const RegionSys
                       const Spread& spread) {
     Eigen::Vector3d e;
     Rows rows;
-    Eigen::Matrix3d left;
-    system.cleared(n, fit, e, rows, left);
+    system.cleared(n, fit, e, rows);
     const PreparedSpot& s = system.spot(n);
-    const Eigen::Matrix3d covariance =
-        s.sigma * s.sigma * Eigen::Matrix3d::Identity() + rows * spread.covariance * rows.transpose() + left;
+    const Eigen::Matrix3d covariance = s.sigma * s.sigma * Eigen::Matrix3d::Identity() +
+                                       rows * spread.covariance * rows.transpose() + system.left(n, fit);
     return studentise(s, e, covariance);
 }
 
@@ -93,17 +92,19 @@ double chi_square_p(double value, int degrees) {
 }
 
 Agreement agreement(const RegionSystem& system, const RegionSystem::Fit& fit, const Spread& spread,
-                    std::span<const double> factor) {
+                    std::span<const double> factor, double enough) {
     Agreement out;
     Eigen::Vector3d e;
     Rows rows;
-    Eigen::Matrix3d left;
     double largest = 0;  // statistic with two degrees
+    // One that would be no larger than this with all that can be left of the sensors' errors is not looked at closely.
+    const bool shared = !fit.shared.sensors.empty();
+    const double harmless = shared && enough < 1 ? -2 * std::log(enough) : 0;
     // What the sensors are found to err by counts against their priors.
     for (const SharedBlock& b : fit.shared.sensors) out.sum_squares += b.value.squaredNorm();
     for (std::size_t n = 0; n < system.size(); ++n) {
         if (!(factor[n] > 0)) continue;
-        system.cleared(n, fit, e, rows, left);
+        system.cleared(n, fit, e, rows);
         const PreparedSpot& s = system.spot(n);
         out.observed += s.observed;
         for (int i = 0; i < 3; ++i) {
@@ -115,15 +116,22 @@ Agreement agreement(const RegionSystem& system, const RegionSystem::Fit& fit, co
             const Vector6 jx = rows.row(0).transpose(), jz = rows.row(2).transpose();
             const Vector6 cx = spread.bread.lazyProduct(jx), cz = spread.bread.lazyProduct(jz);
             const double v = 1 / (s.sigma * s.sigma);
-            const double xx = 1 - v * (jx.dot(cx) + left(0, 0)), xz = -v * (jx.dot(cz) + left(0, 2)),
-                         zz = 1 - v * (jz.dot(cz) + left(2, 2));
-            const double det = xx * zz - xz * xz;
-            if (xx > 1e-3 && zz > 1e-3 && det > 1e-3 * xx * zz) {
-                const double t = v * (zz * e.x() * e.x() - 2 * xz * e.x() * e.z() + xx * e.z() * e.z()) / det;
-                largest = std::max(largest, t);
+            const double jxx = jx.dot(cx), jxz = jx.dot(cz), jzz = jz.dot(cz);
+            const auto statistic = [&](const Eigen::Matrix3d& left) -> std::optional<double> {
+                const double xx = 1 - v * (jxx + left(0, 0)), xz = -v * (jxz + left(0, 2)),
+                             zz = 1 - v * (jzz + left(2, 2));
+                const double det = xx * zz - xz * xz;
+                if (!(xx > 1e-3 && zz > 1e-3 && det > 1e-3 * xx * zz)) return std::nullopt;
+                return v * (zz * e.x() * e.x() - 2 * xz * e.x() * e.z() + xx * e.z() * e.z()) / det;
+            };
+            if (harmless > 0)
+                if (const auto t = statistic(system.left_at_most(n, fit)); t && *t <= harmless) continue;
+            if (const auto t = statistic(system.left(n, fit))) {
+                largest = std::max(largest, *t);
                 continue;
             }
         }
+        const Eigen::Matrix3d left = system.left(n, fit);
         // Residual = (I - J K) noise with the gain K = bread J^T Omega.
         const Eigen::Matrix3d j = rows * spread.bread * rows.transpose() + left;
         const Eigen::Matrix3d gain = j * Eigen::Matrix3d(s.weights.cwiseAbs2().asDiagonal());

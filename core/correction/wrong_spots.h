@@ -21,9 +21,10 @@ struct Agreement {
     int observed = 0, redundancy = 0;
 };
 
-// sum_squares is chi-square with `redundancy` degrees when all weights are 0 or 1, near it otherwise.
+// sum_squares is chi-square with `redundancy` degrees when all weights are 0 or 1, near it otherwise. A smallest_p of at
+// least `enough` need not be told: it may come out larger.
 Agreement agreement(const RegionSystem& system, const RegionSystem::Fit& fit, const Spread& spread,
-                    std::span<const double> factor);
+                    std::span<const double> factor, double enough = 1);
 
 enum class Verdict {
     agree,         // nothing wrong beyond chance

@@ -98,15 +98,20 @@ void compensate(const Project& project, DriftStanding& s, double cold) {
     const DriftWatch& watch = *project.drift;
     ActingDrift& a = s.acting;
     a.drifts = watch.drifts;
-    if (!watch.compensate) return;
+    const Spot* spot = drift_spot(project, watch.spot_ids.empty() ? "" : watch.spot_ids.front());
+    if (spot) a.device_id = watch.drifts == DriftOf::sensor ? spot->sensor_id : spot->robot_id;
+    if (!watch.compensate) {
+        for (std::size_t d = 0; spot && d < s.level_mm.size(); ++d)
+            a.standing_mm = std::max(a.standing_mm, std::hypot(s.level_mm[d], s.level_sigma_mm[d]));
+        return;
+    }
     if (s.stopped) {
         a.why = Text("a step is never compensated");
     } else if (s.level_mm.empty()) {
         a.why = Text("nothing is learnt");
     } else if (s.old) {
         a.why = Text("the last point is {} parts or {:.0f} minutes old", s.parts_since, s.minutes_since);
-    } else if (const Spot* spot = drift_spot(project, watch.spot_ids.empty() ? "" : watch.spot_ids.front())) {
-        a.device_id = watch.drifts == DriftOf::sensor ? spot->sensor_id : spot->robot_id;
+    } else if (spot) {
         std::vector<double> level = s.level_mm;
         for (std::size_t d = 0; d < level.size(); ++d)
             level[d] += cold * watch.learnt->directions[d].warm_up_mm;

@@ -260,6 +260,8 @@ void describe(A& a, PartSetup& v) {
     a("name", v.name);
     a("mesh_source", v.mesh_source);
     a("base_from_workobject", v.base_from_workobject);
+    // Absent where it says nothing, so that a setup of before is the same setup.
+    if (A::reading || !v.workobject_covariance.isZero(0)) a("workobject_covariance", v.workobject_covariance);
 }
 template <class A>
 void describe(A& a, SensorSetup& v) {
@@ -280,6 +282,7 @@ void describe(A& a, RobotSetup& v) {
     a("required_mode", v.required_mode);
     a("arrival_covariance", v.arrival_covariance);
     a("trigger_latency_ms", v.trigger_latency_ms);
+    if (A::reading || v.speed_sigma != 0) a("speed_sigma", v.speed_sigma);
     if (A::reading || !v.collisions.empty()) a("collisions", v.collisions);
 }
 template <class A>
@@ -302,6 +305,8 @@ void describe(A& a, Calibration& v) {
     a("model", v.model);
     a("flange_from_sensor", v.flange_from_sensor);
     a("covariance", v.covariance);
+    if (A::reading || !v.scale_sigma.isZero(0)) a("scale_sigma", v.scale_sigma);
+    if (A::reading || v.shear_sigma != 0) a("shear_sigma", v.shear_sigma);
     a("verdict", v.verdict);
     if (A::reading || v.nozzle) a("nozzle", v.nozzle);
     a("raw", v.raw);
@@ -610,6 +615,7 @@ void describe(A& a, ActingDrift& v) {
     a("device_id", v.device_id);
     a("shift_mm", v.shift_mm);
     a("sigma_mm", v.sigma_mm);
+    if (A::reading || v.standing_mm != 0) a("standing_mm", v.standing_mm);
 }
 template <class A>
 void describe(A& a, Project& v) {

@@ -3,6 +3,8 @@
 
 #include "projects/hand_over/hand_over_detail.h"
 #include "projects/measure/measure.h"
+#include "projects/proof/budget_advice.h"
+#include "projects/proof/budget_page.h"
 #include "projects/proof/forecast.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
@@ -93,6 +95,28 @@ std::string histogram(const HandOverWriter& w, const KnownShift& proof) {
     return report::svg(plot);
 }
 
+// Random and systematic apart, and what they are made of.
+void uncertainty_of(HandOverWriter& w, const Region& region) {
+    const auto budget = worst_budget(w.project, region);
+    const MeasurandBudget* m = budget ? worst_across_bead(*budget) : nullptr;
+    if (!m) return;
+    w.page.heading(w.t("What region {} is uncertain by", region.id), 3);
+    w.page.paragraph(
+        w.t("Across the bead at spot {}, where it is worst of the part as taught and as displaced by what is "
+            "required: "
+            "u = {} mm (random {}, systematic {}), U = {} mm (95 %).",
+            budget->spot_id, w.number(m->u, 4), w.number(m->u_random, 4), w.number(m->u_systematic, 4),
+            w.number(m->expanded, 4)));
+    Rows rows{{w.t("Contribution"), w.t("Part"), "u mm", w.t("Share %")}};
+    for (const BudgetRow& row : m->rows)
+        rows.push_back(
+            {name_of(row.source).in(w.options.language) + (row.owner.empty() ? "" : " " + row.owner),
+             is_systematic(row.source) ? w.t("systematic") : w.t("random"), w.number(row.u, 4),
+             w.number(100 * row.share, 1)});
+    w.page.table(rows);
+    for (const Text& remark : budget->remarks) w.page.paragraph(remark.in(w.options.language));
+}
+
 }  // namespace
 
 void regions_chapter(HandOverWriter& w) {
@@ -119,6 +143,7 @@ void regions_chapter(HandOverWriter& w) {
         "Predicted: 3 sigma at the worst spot along its worst direction, as the safety gate judges it, over "
         "the part as taught and as displaced by what is required. Proven: 3 times the root mean square of "
         "the deviations of the known shift, bias included."));
+    for (const Region& r : w.project.regions) uncertainty_of(w, r);
     for (const Region& r : w.project.regions)
         if (const KeptOffset* kept = acting_offset(r))
             w.page.verdict(

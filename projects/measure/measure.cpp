@@ -146,12 +146,18 @@ std::optional<Feature> feature_at_reference(const Spot& spot) {
     return found;
 }
 
+// The way in the trigger's latency; 0 where the robot stands at the trigger.
+double latency_travel_mm(const Spot& spot, const RobotSetup& robot) {
+    return spot.stop_at_trigger ? 0 : 1e-3 * robot.trigger_latency_ms * spot.speed_mm_s;
+}
+
 // What errs in the same way again.
 void add_repeating(const Project& project, const Spot& spot, const Calibration& calibration,
                    const std::optional<Feature>& at_reference, SpotObservation& o) {
     o.sensor = spot.sensor_id;
     if (at_reference) o.reference_covariance_mm2 = at_reference->covariance_mm2;
     const RobotSetup* robot = find_robot(project, spot.robot_id);
+    if (robot) o.latency_travel_mm = latency_travel_mm(spot, *robot);
     if (!robot || robot->arrival_covariance.isZero(0)) return;
     const Pose& flange_from_sensor = calibration.flange_from_sensor;
     const Matrix6 in_base = covariance_of_product(spot.base_from_flange, robot->arrival_covariance,
@@ -377,19 +383,75 @@ const StripePeaks& SpotMeasurer::peaks() const {
     return impl_->peaks;
 }
 
-CorrectionOptions correction_options(const Project& project, const Region& region) {
+namespace {
+
+// What the trigger of a sensor's spots errs by.
+void state_trigger(const Project& project, const std::string& sensor_id, SensorPrior& prior) {
+    for (const Spot& spot : project.spots) {
+        if (spot.sensor_id != sensor_id) continue;
+        const RobotSetup* robot = find_robot(project, spot.robot_id);
+        if (!robot || latency_travel_mm(spot, *robot) == 0) continue;
+        prior.latency_sigma = 1;  // none of it is taken off
+        prior.speed_sigma = std::max(prior.speed_sigma, robot->speed_sigma);
+    }
+}
+
+void state_drift(DriftOf drifts, const std::string& device_id, double sigma_mm, CorrectionOptions& options) {
+    if (drifts == DriftOf::robot) {
+        options.robot_drift_sigma_mm = sigma_mm;
+        return;
+    }
+    for (SensorPrior& prior : options.sensors)
+        if (prior.id == device_id) prior.drift_sigma_mm.setConstant(sigma_mm);
+}
+
+// Of the sensor or the robot that measures the region.
+bool concerns(const Project& project, const Region& region, DriftOf drifts, const std::string& device_id) {
+    return std::any_of(region.spot_ids.begin(), region.spot_ids.end(), [&](const std::string& id) {
+        const Spot* spot = find_spot(project, id);
+        return spot && (drifts == DriftOf::sensor ? spot->sensor_id : spot->robot_id) == device_id;
+    });
+}
+
+}  // namespace
+
+CorrectionOptions correction_options(const Project& project, const Region& region, const ActingDrift* drift) {
     CorrectionOptions options;
     for (const SensorSetup& sensor : project.sensors)
         if (const Calibration* calibration = calibration_of(project, sensor.id)) {
             const Matrix6& c = calibration->covariance;
-            options.sensors.emplace_back().id = sensor.id;
-            options.sensors.back().hand_eye_covariance =
+            SensorPrior& prior = options.sensors.emplace_back();
+            prior.id = sensor.id;
+            prior.hand_eye_covariance =
                 hand_eye_along_sensor(calibration->flange_from_sensor, 0.5 * (c + c.transpose()));
+            prior.scale_sigma = calibration->scale_sigma;
+            prior.shear_sigma = calibration->shear_sigma;
+            state_trigger(project, sensor.id, prior);
         }
+    options.workobject_covariance = project.part.workobject_covariance;
+    if (drift && !drift->compensated && concerns(project, region, drift->drifts, drift->device_id))
+        state_drift(drift->drifts, drift->device_id, drift->standing_mm, options);
     options.free = region.free;
     options.limits = region.limits;
     options.sigma_limit_mm = std::max(options.sigma_limit_mm, region.sigma_limit_mm);
     options.sigma_limit_deg = std::max(options.sigma_limit_deg, region.sigma_limit_deg);
+    return options;
+}
+
+CorrectionOptions planned_options(const Project& project, const Region& region) {
+    CorrectionOptions options = correction_options(project, region);
+    if (!project.drift || !project.drift->learnt || project.drift->spot_ids.empty()) return options;
+    const DriftWatch& watch = *project.drift;
+    const Spot* spot = find_spot(project, watch.spot_ids.front());
+    if (!spot) return options;
+    double sigma_mm = watch.limit_mm / std::sqrt(3.0);
+    if (watch.compensate) {
+        sigma_mm = 0;
+        for (const LearntDirection& d : watch.learnt->directions) sigma_mm = std::max(sigma_mm, d.sigma_mm);
+    }
+    const std::string& device_id = watch.drifts == DriftOf::sensor ? spot->sensor_id : spot->robot_id;
+    if (concerns(project, region, watch.drifts, device_id))
+        state_drift(watch.drifts, device_id, sigma_mm, options);
     return options;
 }
 
@@ -402,8 +464,11 @@ double travel_window_mm(const Spot& spot) {
     return spot.stop_at_trigger ? 0 : spot.jitter_mm;
 }
 
-RegionCorrector::RegionCorrector(const Project& project, const Region& region)
-    : project_(&project), options_(correction_options(project, region)), roughly_(options_) {
+RegionCorrector::RegionCorrector(const Project& project, const Region& region, const ActingDrift* drift)
+    : RegionCorrector(project, correction_options(project, region, drift)) {}
+
+RegionCorrector::RegionCorrector(const Project& project, CorrectionOptions options)
+    : project_(&project), options_(std::move(options)), roughly_(options_) {
     roughly_.limits = {};
 }
 
@@ -540,13 +605,14 @@ std::vector<RegionRecord> correct_regions(const Project& project,
             continue;
         }
         RegionCorrection correction;
-        if (auto solved = RegionCorrector(project, region).correct(observations, correction); !solved) {
+        if (auto solved = RegionCorrector(project, region, drift).correct(observations, correction);
+            !solved) {
             record.refusals.push_back(Text("the correction refuses its input: {}", solved.error().text()));
             continue;
         }
         record.correction = std::move(correction);
         if (const RegionModes* modes = modes_of(project, region.id); modes && modes->on)
-            bend(*modes, correction_options(project, region), observations, record);
+            bend(*modes, correction_options(project, region, drift), observations, record);
         if (const KeptOffset* kept = acting_offset(region)) take_off(*kept, record);
         if (drift && drift->compensated) add_systematic(*record.correction, drift->sigma_mm);
     }

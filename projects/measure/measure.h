@@ -101,8 +101,14 @@ class SpotMeasurer {
 
 // What correction and plan of a region are asked for: its free degrees and limits; a direction that the
 // region's sigma limits would refuse anyway by far is not observed at all. What its sensors err by is the
-// covariance of their calibrations' flange_from_sensor, turned into the sensor.
-CorrectionOptions correction_options(const Project& project, const Region& region);
+// covariance of their calibrations' flange_from_sensor, turned into the sensor, scale and shear as the calibration states
+// them, and its robot's latency and change of speed; the path's work object is the part's. `drift`: of a run, the standing
+// of a watch that takes nothing off.
+CorrectionOptions correction_options(const Project& project, const Region& region,
+                                     const ActingDrift* drift = nullptr);
+// Of a part to come: with what the drift watch lets pass. It is uniform within the watch's limit; where it compensates, a
+// point's own sigma is left. Without a watch that has learnt, nothing is stated.
+CorrectionOptions planned_options(const Project& project, const Region& region);
 
 // A region's correction from what its spots say. Solved twice: where the part lies tells how far the contour of
 // each spot moves in the laser plane while the trigger jitters over Spot::jitter_mm (uniform, half width;
@@ -110,7 +116,8 @@ CorrectionOptions correction_options(const Project& project, const Region& regio
 // jitter. Keeps its memory from part to part. The project must outlive it.
 class RegionCorrector {
   public:
-    RegionCorrector(const Project& project, const Region& region);
+    RegionCorrector(const Project& project, const Region& region, const ActingDrift* drift = nullptr);
+    RegionCorrector(const Project& project, CorrectionOptions options);
     // `observations` are left with the travel's covariance in them.
     Expected<void> correct(std::vector<SpotObservation>& observations, RegionCorrection& correction);
 

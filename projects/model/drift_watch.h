@@ -85,6 +85,9 @@ struct ActingDrift {
     std::string device_id;                               // sensor or robot that it is the drift of
     Eigen::Vector3d shift_mm = Eigen::Vector3d::Zero();  // taken off: sensor frame, or base
     double sigma_mm = 0;                                 // of it, worst direction
+    // Where nothing is taken off: how far the reference stands off its learnt place, worst direction, its sigma with it. The
+    // correction states it as one standard deviation of the device's drift. 0: nothing is learnt.
+    double standing_mm = 0;
 };
 
 Text said_of(

@@ -49,6 +49,9 @@ struct PartSetup {
     std::string mesh_source;          // where the mesh came from, for people
     std::vector<std::byte> mesh_ply;  // binary PLY, millimetres, work object frame; empty when there is none
     Pose base_from_workobject = Pose::Identity();
+    // (rho, theta) of base_from_workobject Exp(rho, theta) that the path is laid in, along the work object's axes, mm and
+    // rad: how well two robots' work objects agree. 0: the robot that measures also lays.
+    Matrix6 workobject_covariance = Matrix6::Zero();
 };
 
 struct SensorSetup {
@@ -74,6 +77,9 @@ struct RobotSetup {
     // From the instant whose pose the controller tells with a trigger to the exposure, measured by
     // measure_trigger.h: the cut lies latency times speed further along the travel. 0: not stated.
     double trigger_latency_ms = 0;
+    // Standard deviation of the share by which its speed at the spots differs from that of the teaching (override): 0.1 is a
+    // tenth. With the latency it moves the cuts along the travel. 0: not stated.
+    double speed_sigma = 0;
     // When it collided, as a person said, ISO 8601, oldest first. What was calibrated before the last one is stale.
     std::vector<std::string> collisions;
 };
@@ -99,6 +105,9 @@ struct Calibration {
     std::optional<SensorModel> model;  // absent for sensors that deliver millimetres themselves
     Pose flange_from_sensor = Pose::Identity();
     Matrix6 covariance = Matrix6::Zero();
+    // Of the sensor's own millimetres: scale of x and z and shear of x against z, 1/1 (SensorPrior). 0: not stated.
+    Eigen::Vector2d scale_sigma = Eigen::Vector2d::Zero();
+    double shear_sigma = 0;
     Verdict verdict = Verdict::undetermined;
     std::optional<NozzleTip> nozzle;
     nlohmann::json raw =

@@ -93,7 +93,7 @@ Expected<PlacingTask> task_of(const Project& project, const Region& region,
     for (const BeadPoint& p : bead) middle += p.point_mm / static_cast<double>(bead.size());
     task.bead = bead;
     task.displacements = required_displacements(project.requirements, middle);
-    task.options = correction_options(project, region);
+    task.options = planned_options(project, region);
     return task;
 }
 

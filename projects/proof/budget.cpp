@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/acceptance/distributions.h"
+#include "core/geometry/decompositions.h"
 #include "core/geometry/notation.h"
 #include "projects/measure/measure.h"
 #include "projects/measure/nozzle.h"
@@ -77,6 +78,16 @@ std::vector<Text> not_stated(const Project& project, const CorrectionOptions& op
         if (used && p.scale_sigma.isZero(0) && p.shear_sigma == 0)
             out.push_back(Text("Sensor {}: no uncertainty of its scale and shear is stated.", p.id));
     }
+    if (!project.drift || !project.drift->learnt)
+        out.push_back(
+            Text("No drift watch has learnt its reference: what wanders after the calibration is not "
+                 "in the budget."));
+    for (const RobotSetup& robot : project.robots)
+        if (robot.trigger_latency_ms != 0 && robot.speed_sigma == 0)
+            out.push_back(
+                Text("Robot {}: it is taken to pass the spots as fast as when they were taught; say with "
+                     "--state {}:speed_change=0.1 by what share it may differ.",
+                     robot.id, robot.id));
     std::vector<Text> references;
     for (const BudgetSpot& b : spots) {
         if (!b.spot.robot_covariance) robots[find_spot(project, b.spot.id)->robot_id] = true;
@@ -88,6 +99,10 @@ std::vector<Text> not_stated(const Project& project, const CorrectionOptions& op
         out.push_back(
             Text("No reference profile, so no uncertainty of the reference: {}.", listed(references)));
     return out;
+}
+
+bool is_of_spot(ErrorSource source) {
+    return source <= ErrorSource::robot_taught;
 }
 
 bool is_type_a(const Project& project, const BudgetRow& row) {
@@ -142,7 +157,7 @@ class Tables {
             sum.inputs += term.input_sigma * term.input_sigma;
             ++sum.n;
             sum.spread += variance * variance / degrees_of(term);
-            if (is_of_sensor(term.source) || !(variance > sum.largest)) continue;
+            if (!is_of_spot(term.source) || !(variance > sum.largest)) continue;
             sum.largest = variance;
             sum.row.spot_id = spots_[term.of].spot.id;
         }
@@ -166,7 +181,7 @@ class Tables {
             row.sensitivity = row.input_u > 0 ? row.u / row.input_u : 0;
             if (sum.spread > 0) row.degrees = sum.variance * sum.variance / sum.spread;
             row.type_a = is_type_a(project_, row);
-            if (sum.n == 1 || !(sum.variance > 0)) row.spot_id.clear();
+            if (sum.n == 1 || !(sum.variance > 0) || !is_of_spot(row.source)) row.spot_id.clear();
             squares.push_back({sum.variance, row.degrees});
             (is_systematic(row.source) ? systematic : random) += sum.variance;
             out.rows.push_back(row);
@@ -185,6 +200,8 @@ class Tables {
   private:
     std::string owner_of(const BudgetTerm& term) const {
         if (is_of_sensor(term.source)) return options_.sensors[term.of].id;
+        if (term.source == ErrorSource::robot_drift) return find_spot(project_, spots_[0].spot.id)->robot_id;
+        if (!is_of_spot(term.source)) return {};
         const Spot& spot = *find_spot(project_, spots_[term.of].spot.id);
         const bool robot = term.source == ErrorSource::travel || term.source == ErrorSource::robot_run ||
                            term.source == ErrorSource::robot_taught;
@@ -219,6 +236,17 @@ void add_nozzle_remarks(const Project& project, const Calibration& nozzle, std::
                  "found tool is "
                  "entered on the controller.",
                  nozzle.robot_id, nozzle.nozzle->off_programmed_mm));
+}
+
+// As correct_regions() adds it.
+void add_offset(const KeptOffset& kept, UncertaintyBudget& budget) {
+    BudgetTerm& term = budget.terms.emplace_back();
+    term.source = ErrorSource::offset;
+    term.covariance.topLeftCorner<3, 3>() = kept.covariance_mm2;
+    term.sigma.xyz_mm = kept.covariance_mm2.diagonal().cwiseMax(0).cwiseSqrt();
+    term.input_sigma = term.sigma.xyz_mm.norm() / std::sqrt(3.0);
+    budget.covariance += term.covariance;
+    budget.sigma.xyz_mm = (budget.sigma.xyz_mm.cwiseAbs2() + term.sigma.xyz_mm.cwiseAbs2()).cwiseSqrt();
 }
 
 // Normal and binormal where either is largest.
@@ -257,7 +285,7 @@ Expected<Prepared> prepare(const Project& project, const Region& region) {
     Prepared out;
     SEAM_TRY(auto spots, spots_of(project, region));
     out.spots = std::move(spots);
-    out.correction = correction_options(project, region);
+    out.correction = planned_options(project, region);
     std::vector<SpotObservation> observations;
     for (const BudgetSpot& b : out.spots) observations.push_back(b.spot);
     SEAM_TRY(auto plan, plan_region(observations, out.correction));
@@ -281,7 +309,8 @@ Expected<FirstOrder> first_order(const Project& project, const Region& region, c
     b.region_id = region.id;
     b.displacement = displacement;
     b.required_sigma3_mm = project.requirements.sigma3_mm;
-    SEAM_TRY(const auto budget, uncertainty_budget(p.spots, p.correction, displacement));
+    SEAM_TRY(auto budget, uncertainty_budget(p.spots, p.correction, displacement));
+    if (const KeptOffset* kept = acting_offset(region)) add_offset(*kept, budget);
     if (p.plan.status != CorrectionStatus::ok || !budget.determined) {
         b.status = CorrectionStatus::under_determined;
         b.message = p.plan.advice;
@@ -366,18 +395,31 @@ Expected<RegionBudget> region_budget(const Project& project, const Region& regio
     if (!options.monte_carlo || out.status != CorrectionStatus::ok) return out;
 
     CorrectionDraws draws(prepared.spots, prepared.correction, options.displacement, options.seed);
-    RegionCorrector corrector(project, region);
+    RegionCorrector corrector(project, prepared.correction);
     RegionCorrection found;
     const auto truth = printed(d);
     // Of the bead alone, and of its own: without a nozzle the draws are what they were.
     const double nozzle_mm = first.nozzle ? nozzle_sigma_mm(*first.nozzle) : 0;
     std::mt19937_64 nozzle_random(options.seed + 1);
     std::normal_distribution<double> nozzle_draw;
+    const KeptOffset* const kept = acting_offset(region);
+    std::mt19937_64 offset_random(options.seed + 2);
+    std::normal_distribution<double> offset_draw;
+    Eigen::Matrix3d offset_root = Eigen::Matrix3d::Zero();
+    if (kept) {
+        const SymmetricEigen eigen = symmetric_eigen(kept->covariance_mm2);
+        offset_root = eigen.vectors * eigen.values.cwiseMax(0).cwiseSqrt().asDiagonal();
+    }
     const auto trial = [&](std::span<double> values) {
         if (!corrector.correct(draws.next(), found)) return false;
         if (found.status != CorrectionStatus::ok && found.status != CorrectionStatus::over_limit)
             return false;
-        const Pose& estimate = found.displacement.workobject_from_movedworkobject;
+        Pose estimate = draws.laid(found.displacement.workobject_from_movedworkobject);
+        if (kept) {
+            Eigen::Vector3d v;
+            for (int k = 0; k < 3; ++k) v[k] = offset_draw(offset_random);
+            estimate.pretranslate(Eigen::Vector3d(offset_root * v));
+        }
         const auto off = Eigen::Matrix<double, 6, 1>(printed(estimate) - truth);
         for (std::size_t i = 0; i < first.measures.size(); ++i) {
             const int k = static_cast<int>(first.measures[i].quantity) - static_cast<int>(Quantity::x);

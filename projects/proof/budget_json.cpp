@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "devices/exchange/pose_json.h"
+#include "projects/proof/budget_advice.h"
 
 namespace seamwright {
 namespace {
@@ -19,7 +20,7 @@ json row_json(const BudgetRow& row) {
             {"spot", row.spot_id.empty() ? json() : json(row.spot_id)},
             {"part", is_systematic(row.source) ? "systematic" : "random"},
             {"input_u", row.input_u},
-            {"input_unit", row.source >= ErrorSource::scale_x ? "1" : "mm"},
+            {"input_unit", is_share(row.source) ? "1" : "mm"},
             {"type", row.type_a ? "A" : "B"},
             {"degrees", degrees_json(row.degrees)},
             {"sensitivity", row.sensitivity},
@@ -52,11 +53,17 @@ json measurand_json(const MeasurandBudget& m) {
 json budget_json(const RegionBudget& b) {
     json measurands = json::array();
     for (const MeasurandBudget& m : b.measurands) measurands.push_back(measurand_json(m));
+    json mend = json::array();
+    for (const Mending& m : mendings(b))
+        mend.push_back({{"source", to_string(m.source)},
+                        {"what", m.what},
+                        {"share_percent", 100 * m.share},
+                        {"u_without", m.u_mm}});
     json out = {
         {"id", b.region_id},    {"status", to_string(b.status)},
         {"message", b.message}, {"displacement", pose_json(b.displacement.workobject_from_movedworkobject)},
         {"spot", b.spot_id},    {"measurands", measurands},
-        {"remarks", b.remarks}};
+        {"remarks", b.remarks}, {"mend", mend}};
     if (b.drawn)
         out["monte_carlo"] = {{"trials", b.drawn->trials},
                               {"failed", b.drawn->failed},

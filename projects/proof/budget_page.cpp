@@ -5,6 +5,7 @@
 
 #include "core/geometry/notation.h"
 #include "projects/file/project_file.h"
+#include "projects/proof/budget_advice.h"
 #include "projects/report/svg_bars.h"
 #include "projects/report/svg_plot.h"
 
@@ -29,14 +30,14 @@ struct BudgetWriter {
     // So many that they count as infinite.
     static std::string degrees(double value) { return value < 1e5 ? number(value, 0) : "∞"; }
     std::string label(const BudgetRow& row) const {
-        return name_of(row.source).in(language) + " " + row.owner;
+        return name_of(row.source).in(language) + (row.owner.empty() ? "" : " " + row.owner);
     }
 };
 
-// Scale and shear in mm on a metre.
+// Scale, shear and change of speed in parts of a thousand (of scale: mm on a metre).
 constexpr double kPerMetre = 1000;
 bool is_relative(const BudgetRow& row) {
-    return row.source >= ErrorSource::scale_x;
+    return is_share(row.source);
 }
 
 void table(const BudgetWriter& w, const MeasurandBudget& m) {
@@ -46,7 +47,7 @@ void table(const BudgetWriter& w, const MeasurandBudget& m) {
     for (const BudgetRow& row : m.rows) {
         const double scale = is_relative(row) ? kPerMetre : 1;
         rows.push_back({w.label(row), row.spot_id, w.number(scale * row.input_u),
-                        is_relative(row) ? "mm/m" : "mm", row.type_a ? "A" : "B", w.degrees(row.degrees),
+                        is_relative(row) ? "1/1000" : "mm", row.type_a ? "A" : "B", w.degrees(row.degrees),
                         w.number(row.sensitivity / scale), w.number(row.u), w.number(100 * row.share, 1),
                         is_systematic(row.source) ? w.t("systematic") : w.t("random")});
     }
@@ -112,6 +113,14 @@ void region_chapter(const BudgetWriter& w, const RegionBudget& b) {
         table(w, m);
         if (m.quantity <= Quantity::binormal) w.page.figure(bars(w, m));
     }
+    if (const auto all = mendings(b); !all.empty()) {
+        w.page.heading(w.t("What to mend"), 3);
+        Rows rows{{w.t("Contribution"), w.t("Share %"), w.t("u without it (mm)"), w.t("What helps")}};
+        for (const Mending& m : all)
+            rows.push_back({name_of(m.source).in(w.language), w.number(100 * m.share, 1), w.number(m.u_mm),
+                            m.what.in(w.language)});
+        w.page.table(rows);
+    }
     if (b.drawn) monte_carlo_chapter(w, b);
     if (!b.remarks.empty()) w.page.heading(w.t("Not stated, therefore not in the budget"), 3);
     for (const Text& remark : b.remarks) w.page.paragraph(remark.in(w.language));
@@ -135,6 +144,12 @@ Text name_of(ErrorSource source) {
             return Text("arrival, taught");
         case ErrorSource::nozzle:
             return Text("nozzle");
+        case ErrorSource::offset:
+            return Text("kept offset");
+        case ErrorSource::workobject:
+            return Text("work object");
+        case ErrorSource::robot_drift:
+            return Text("drift of the robot");
         case ErrorSource::hand_eye:
             return Text("hand-eye");
         case ErrorSource::scale_x:
@@ -143,6 +158,12 @@ Text name_of(ErrorSource source) {
             return Text("scale of z");
         case ErrorSource::shear:
             return Text("shear");
+        case ErrorSource::latency:
+            return Text("latency");
+        case ErrorSource::speed:
+            return Text("change of speed");
+        case ErrorSource::sensor_drift:
+            return Text("drift of the sensor");
     }
     return {};
 }

@@ -43,7 +43,7 @@ class Forecaster {
   public:
     Forecaster(const Project& project, const Region& region, Spots spots)
         : project_(project),
-          options_(correction_options(project, region)),
+          options_(planned_options(project, region)),
           spots_(std::move(spots)),
           nozzle_mm_(nozzle_sigma_mm(project, region)),
           middle_(Eigen::Vector3d::Zero()) {
@@ -160,7 +160,7 @@ std::vector<Displacement> required_displacements(const Requirements& need, const
 
 Expected<RegionForecast> forecast_region(const Project& project, const Region& region) {
     Spots spots = planned_observations(project, region);
-    SEAM_TRY(auto plan, plan_region(spots, correction_options(project, region)));
+    SEAM_TRY(auto plan, plan_region(spots, planned_options(project, region)));
     RegionForecast forecast;
     forecast.plan = std::move(plan);
     forecast.wanted_mm = std::min(region.sigma_limit_mm, project.requirements.sigma3_mm / 3);

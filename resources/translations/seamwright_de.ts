@@ -2306,6 +2306,25 @@
     </message>
 </context>
 <context>
+    <name>seamwright::BudgetPanel</name>
+    <message>
+        <source>Across the bead at spot %1, where it is worst: u = %2 mm (random %3, systematic %4), U = %5 mm (95 %). The shares of the variance:</source>
+        <translation>Quer zur Raupe an Messstelle %1, wo es am schlechtesten ist: u = %2 mm (zufällig %3, systematisch %4), U = %5 mm (95 %). Die Anteile an der Varianz:</translation>
+    </message>
+    <message>
+        <source>%1 % of it, u = %2 mm without: %3</source>
+        <translation>%1 % davon, u = %2 mm ohne: %3</translation>
+    </message>
+    <message>
+        <source>What to mend, the largest first:</source>
+        <translation>Was zu verbessern ist, das Größte zuerst:</translation>
+    </message>
+    <message>
+        <source>Not stated, therefore not in it:</source>
+        <translation>Nicht angegeben, deshalb nicht darin:</translation>
+    </message>
+</context>
+<context>
     <name>seamwright::CalibratePage</name>
     <message>
         <source>of unknown age</source>
@@ -2406,6 +2425,14 @@
 </context>
 <context>
     <name>seamwright::CalibrationDesk</name>
+    <message>
+        <source>Trying the conventions of poses</source>
+        <translation>Konventionen der Posen werden versucht</translation>
+    </message>
+    <message>
+        <source>Read the poses in the convention found</source>
+        <translation>Posen in der gefundenen Konvention lesen</translation>
+    </message>
     <message>
         <source>Leave out %1</source>
         <translation>%1 weglassen</translation>
@@ -3008,6 +3035,26 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
 </context>
 <context>
     <name>seamwright::GuidedPage</name>
+    <message>
+        <source>Which convention?</source>
+        <translation>Welche Konvention?</translation>
+    </message>
+    <message>
+        <source>Tries the poses in every convention of angles, units, order and direction; changes nothing</source>
+        <translation>Versucht die Posen in jeder Konvention von Winkeln, Einheiten, Reihenfolge und Richtung; ändert nichts</translation>
+    </message>
+    <message>
+        <source>Read them so</source>
+        <translation>So lesen</translation>
+    </message>
+    <message>
+        <source>Reads all poses of this session in the convention found; undo takes it back</source>
+        <translation>Liest alle Posen dieser Sitzung in der gefundenen Konvention; Rückgängig nimmt es zurück</translation>
+    </message>
+    <message>
+        <source>Residual as given %1 mm, in the best other reading %2 mm</source>
+        <translation>Restfehler wie angegeben %1 mm, in der besten anderen Lesart %2 mm</translation>
+    </message>
     <message>
         <source>Undo the last change of this calibration</source>
         <translation>Die letzte Änderung dieser Kalibrierung rückgängig machen</translation>
@@ -4350,6 +4397,10 @@ hier keine Referenz</translation>
 <context>
     <name>seamwright::ProvePage</name>
     <message>
+        <source>What makes the region uncertain</source>
+        <translation>Woraus die Unsicherheit der Region besteht</translation>
+    </message>
+    <message>
         <source>Runs</source>
         <translation>Läufe</translation>
     </message>
@@ -4847,10 +4898,6 @@ A %5  B %6  C %7 Grad</translation>
         <translation>Woher die Unsicherheit kommt</translation>
     </message>
     <message>
-        <source>Across the bead at spot %1, where it is worst: u = %2 mm (random %3, systematic %4), U = %5 mm (95 %). The shares of the variance:</source>
-        <translation>Quer zur Raupe an Messstelle %1, wo es am schlechtesten ist: u = %2 mm (zufällig %3, systematisch %4), U = %5 mm (95 %). Die Anteile an der Varianz:</translation>
-    </message>
-    <message>
         <source>%1 (from the drawing, not confirmed)</source>
         <translation>%1 (aus der Zeichnung, nicht bestätigt)</translation>
     </message>
@@ -4898,6 +4945,10 @@ ausgelassen</translation>
 </context>
 <context>
     <name>seamwright::RunPage</name>
+    <message>
+        <source>sigma %1 random, %2 systematic</source>
+        <translation>Sigma %1 zufällig, %2 systematisch</translation>
+    </message>
     <message>
         <source>pushed, outcome not recorded</source>
         <translation>übertragen, Ausgang nicht festgehalten</translation>

@@ -19,10 +19,12 @@ constexpr int kSpots = 12;
 constexpr int kParts = 64;
 
 std::vector<std::vector<SpotObservation>> parts() {
+    // One region, part after part, as a cell measures it.
     Rng rng(12);
+    const std::vector<SpotObservation> taught = door(rng, kSpots, {900, -400, 250});
     std::vector<std::vector<SpotObservation>> out;
     for (int i = 0; i < kParts; ++i) {
-        out.push_back(door(rng, kSpots, {900, -400, 250}));
+        out.push_back(taught);
         measure(out.back(), random_displacement(rng, 10, 1, {900, -400, 250}));
         add_noise(out.back(), rng, 0.05);
     }

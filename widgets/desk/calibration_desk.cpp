@@ -171,6 +171,46 @@ Expected<void> CalibrationDesk::set_nominal_mounting(const Pose& flange_from_sen
     return edited(session_->set_settings(std::move(settings)), tr("Mounting from the drawing"), before);
 }
 
+bool CalibrationDesk::convention_in_doubt() const {
+    const CalibrationSolution* solution = session_ ? session_->solution() : nullptr;
+    if (!solution || !session_->method().convention_fits) return false;
+    return solution->verdict() == Verdict::poor ||
+           (solution->verdict() == Verdict::undetermined && solution->degenerate.empty());
+}
+
+const ConventionAnswer* CalibrationDesk::convention() const {
+    return session_ && convention_ && convention_of_ == session_->state() ? &*convention_ : nullptr;
+}
+
+void CalibrationDesk::detect_convention() {
+    if (!session_ || busy() || !session_->method().convention_fits) return;
+    set_doing(tr("Trying the conventions of poses"));
+    post([this, session = *session_, generation = generation_](const std::stop_token& cancelled) {
+        auto found = std::make_shared<Expected<ConventionAnswer>>(
+            detect_pose_convention(session.method(), session.data(), session.exclude()));
+        if (cancelled.stop_requested()) return;
+        QMetaObject::invokeMethod(this, [this, found, generation, state = session.state()] {
+            if (generation != generation_) return;
+            set_doing({});
+            if (!*found) return emit refused(shown_error(found->error()));
+            convention_ = std::move(**found);
+            convention_of_ = state;
+            emit changed();
+        });
+    });
+}
+
+Expected<void> CalibrationDesk::take_convention() {
+    const ConventionAnswer* answer = convention();
+    if (!answer || answer->offer.is_null())
+        return usage_error("no convention is offered", {}, "ask for it first");
+    const SessionState before = session_->state();
+    nlohmann::json settings = before.settings;
+    settings["pose_convention"] = answer->offer;
+    return edited(session_->set_settings(std::move(settings)), tr("Read the poses in the convention found"),
+                  before);
+}
+
 Expected<nlohmann::json> CalibrationDesk::capture_settings() const {
     return seamwright::capture_settings(*session_, desk_.project(), shot_sensors());
 }

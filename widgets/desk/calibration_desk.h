@@ -20,6 +20,7 @@
 #include <thread>
 
 #include "core/ids.h"
+#include "projects/calibrate/detect_convention.h"
 #include "projects/calibrate/session/capture.h"
 #include "projects/calibrate/session/guide.h"
 #include "widgets/desk/desk.h"
@@ -66,6 +67,8 @@ class CalibrationDesk : public QObject {
     void capture(bool verification);
     void load(const std::filesystem::path& path);
     void solve();
+    // Asks in which convention the poses are written (projects/calibrate/detect_convention.h); convention() then answers.
+    void detect_convention();
     void cancel();
     bool busy() const { return !doing_.isEmpty(); }
     const QString& doing() const { return doing_; }
@@ -77,6 +80,12 @@ class CalibrationDesk : public QObject {
     const LiveTarget& live() const { return live_; }
     bool switches_laser()
         const;  // the sensor takes a board's picture with its laser off, when it is captured
+
+    // Of exactly these captures and marks; nullptr: not asked. Nothing takes it but take_convention(), which is undoable.
+    const ConventionAnswer* convention() const;
+    Expected<void> take_convention();
+    // Worth asking: the method can tell, and its solution is poor or open for no reason that the poses show.
+    bool convention_in_doubt() const;
 
     // The session's answer into the project, undoable there: all its calibrations or none are kept, and with
     // `use` put to use. Error: not verified, nothing solved, a sensor that the project does not know.
@@ -118,6 +127,8 @@ class CalibrationDesk : public QObject {
     std::uint64_t looked_number_ = 0;
     LiveTarget live_;
     double stillness_ = 0;
+    std::optional<ConventionAnswer> convention_;
+    SessionState convention_of_;
     std::optional<Pose> last_pose_;
     QElapsedTimer still_since_;
     std::stop_source cancel_;

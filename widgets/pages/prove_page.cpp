@@ -179,6 +179,10 @@ void ProvePage::make_known_shift() {
                       "mean as error too"));
     known_table_->setMinimumHeight(4 * 34 + 8);
     box().addWidget(known_table_);
+    box().addWidget(make_heading(tr("What makes the region uncertain")));
+    budget_ = new BudgetPanel;
+    budget_->setObjectName("prove_budget");
+    box().addWidget(budget_);
 }
 
 void ProvePage::make_checklist() {
@@ -215,6 +219,9 @@ void ProvePage::refresh() {
     region_->setCurrentText(q(desk_.selection().region()));
     refresh_zero_shift();
     refresh_known_shift();
+    const int at = index_of<Region>(desk_.project(), region_->currentText().toStdString());
+    budget_->show_region(desk_.project(),
+                         at < 0 ? nullptr : &desk_.project().regions[static_cast<std::size_t>(at)]);
     refresh_checklist();
 }
 

@@ -7,6 +7,7 @@
 #include <QFrame>
 #include <QSpinBox>
 
+#include "widgets/pages/parts/budget_panel.h"
 #include "widgets/pages/parts/step_page.h"
 
 namespace seamwright {
@@ -45,6 +46,7 @@ class ProvePage : public StepPage {
     QPushButton *start_zero_ = nullptr, *start_known_ = nullptr;
     QLabel *zero_verdict_ = nullptr, *known_verdict_ = nullptr;
     QTableWidget *zero_table_ = nullptr, *known_table_ = nullptr;
+    BudgetPanel* budget_ = nullptr;
     QComboBox* by_ = nullptr;
     QDoubleSpinBox *range_mm_ = nullptr, *step_mm_ = nullptr, *range_deg_ = nullptr, *step_deg_ = nullptr;
     QFrame* place_ = nullptr;

@@ -5,8 +5,6 @@
 
 #include "projects/measure/fields.h"
 #include "projects/measure/measure.h"
-#include "projects/proof/budget.h"
-#include "projects/proof/budget_page.h"
 #include "projects/proof/forecast.h"
 #include "projects/proof/known_shift.h"
 #include "widgets/editors/list_habits.h"
@@ -71,12 +69,8 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
     in->addWidget(advice_);
 
     in->addWidget(make_heading(tr("What makes it uncertain")));
-    budget_ = make_text({});
-    budget_->setObjectName("budget");
+    budget_ = new BudgetPanel;
     in->addWidget(budget_);
-    shares_ = new ShareBars;
-    shares_->setObjectName("budget_shares");
-    in->addWidget(shares_);
 
     in->addWidget(make_heading(tr("Spots of the region")));
     spots_ = new QListWidget;
@@ -215,7 +209,7 @@ void RegionsPage::refresh() {
         frame_pose_->set_pose(r->base_from_frame);
         for (std::size_t i = 0; i < editors_.size(); ++i) editors_[i]->set_value(region_fields()[i].get(*r));
         show_plan(*r);
-        show_budget(*r);
+        budget_->show_region(p, r);
     }
     filling_ = false;
 }
@@ -281,30 +275,6 @@ void RegionsPage::show_plan(const Region& r) {
                     .arg(ids.join(", "));
     }
     advice_->setText(text);
-}
-
-void RegionsPage::show_budget(const Region& r) {
-    const auto budget = worst_budget(desk_.project(), r);
-    if (!budget || budget->status != CorrectionStatus::ok) {
-        budget_->setText(shown(budget ? budget->message : budget.error().text()));
-        shares_->set_data({});
-        return;
-    }
-    // Normal and binormal come first.
-    const auto& of = budget->measurands;
-    const MeasurandBudget& m = of[0].u >= of[1].u ? of[0] : of[1];
-    budget_->setText(
-        tr("Across the bead at spot %1, where it is worst: u = %2 mm (random %3, systematic %4), "
-           "U = %5 mm (95 %). The shares of the variance:")
-            .arg(QString::fromStdString(budget->spot_id), number(m.u, 3), number(m.u_random, 3),
-                 number(m.u_systematic, 3), number(m.expanded, 3)));
-    std::vector<ShareOfWhole> shares;
-    for (const BudgetRow& row : m.rows)
-        shares.push_back({shown(name_of(row.source)) + QChar(0x20) + QString::fromStdString(row.owner),
-                          100 * row.share, is_systematic(row.source)});
-    std::stable_sort(shares.begin(), shares.end(),
-                     [](const ShareOfWhole& a, const ShareOfWhole& b) { return a.percent > b.percent; });
-    shares_->set_data(std::move(shares));
 }
 
 }  // namespace seamwright

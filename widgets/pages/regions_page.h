@@ -6,9 +6,9 @@
 #include <QListWidget>
 #include <array>
 
-#include "widgets/charts/share_bars.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
+#include "widgets/pages/parts/budget_panel.h"
 #include "widgets/pages/parts/step_page.h"
 
 namespace seamwright {
@@ -25,7 +25,6 @@ class RegionsPage : public StepPage {
   private:
     const Region* region() const;
     void show_plan(const Region& region);
-    void show_budget(const Region& region);
     QListWidget *list_, *spots_;
     QPushButton *proven_ = nullptr, *rename_, *remove_;
     QWidget* inspector_;
@@ -35,8 +34,7 @@ class RegionsPage : public StepPage {
     std::vector<ParameterEditor*> editors_;
     QLabel *verdict_, *advice_;
     QTableWidget* plan_;
-    QLabel* budget_;
-    ShareBars* shares_;
+    BudgetPanel* budget_;
     bool filling_ = false;
 };
 

@@ -286,9 +286,13 @@ void RunPage::show_run(std::shared_ptr<const RunRecord> run) {
                 const int decimals = k < 3 ? 2 : 3;
                 (k < 3 ? moves : turns) << tr("%1 ± %2").arg(number(v[k], decimals), number(sigma, decimals));
             }
-            row << head(region.gate_passed
-                            ? tr("passed the gate")
-                            : tr("%1, refused").arg(shown_word(to_string(region.correction->status))))
+            const RegionCorrection& c = *region.correction;
+            row << head(region.gate_passed ? tr("passed the gate")
+                                           : tr("%1, refused").arg(shown_word(to_string(c.status)))) +
+                       QChar('\n') +
+                       tr("sigma %1 random, %2 systematic")
+                           .arg(number(c.sigma_random.xyz_mm.maxCoeff(), 3),
+                                number(c.sigma_systematic.xyz_mm.maxCoeff(), 3))
                 << moves.join("\n") << turns.join("\n");
         } else {
             row << head(tr("not solved")) << QStringLiteral("-") << QStringLiteral("-");

@@ -210,6 +210,9 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
             "tcp-sphere");
     c.flange_from_sensor = tcp.flange_from_sensor;
     c.covariance = tcp.covariance;
+    const FieldScale scale = better_known(camera.scale, tcp.scale);
+    c.scale_sigma = scale.scale_sigma;
+    c.shear_sigma = scale.shear_sigma;
     c.method = "stripe-camera + tcp-sphere";
     c.source = Text("{} frames of a plate, {} of a sphere of {} mm, rendered", observations.size(),
                     sphere.size(), *options.radius_mm);

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/calibration/pose_set.h"
+#include "core/calibration/sphere/sphere_scale.h"
 #include "core/calibration/sphere/tcp_sphere_advice.h"
 #include "core/calibration/sphere/tcp_sphere_settle.h"
 #include "core/calibration/sphere/tcp_sphere_solve.h"
@@ -46,6 +47,11 @@ Expected<void> check_input(const std::vector<SphereObservation>& observations,
                                Text("observation '{}'", observation.id));
     }
     SEAM_OK(check_ids(ids, options.exclude, "observations"));
+    if (!(options.robot_sigma_mm >= 0 && options.robot_sigma_mm <= 10 && options.robot_sigma_rad >= 0 &&
+          options.robot_sigma_rad <= 0.1))
+        return input_error("the robot's repeatability is negative, not finite or above 10 mm and 5 degrees",
+                           "robot",
+                           "give one standard deviation of an arrival, e.g. 0.03 mm and 0.005 degrees");
     if (options.radius_mm && !(std::isfinite(*options.radius_mm) && *options.radius_mm > 0))
         return input_error("the sphere's radius is not a positive number", "radius_mm",
                            "give it in millimetres or null");
@@ -292,10 +298,23 @@ bool has_rival(const std::vector<Section>& sections, const std::vector<Start>& s
     return cost < std::max(mean_disagreement * (1 + 60 / std::max(1.0, redundancy)), kAlike_mm * kAlike_mm);
 }
 
+// The poses disagree by more than the robot's stated repeatability explains (99 %).
+bool beyond_stated(const NoiseLevels& noise, double stated_variance) {
+    constexpr double kUpper99 = 2.326;
+    // Chi-square over its degrees, Wilson and Hilferty.
+    const double nu = std::max(1.0, noise.redundancy), c = 2 / (9 * nu);
+    const double limit = std::pow(1 - c + kUpper99 * std::sqrt(c), 3);
+    return noise.poses_disagree && noise.centre_variance > limit * stated_variance;
+}
+
 // Sandwich for the points' noise; the poses' own error is added when they disagree by more (see tcp_sphere.h).
 Matrix10 covariance_of(const std::vector<Section>& sections, const Model& model, const System& system,
-                       const Matrix10& inverse, const NoiseLevels& noise, bool radius_free) {
+                       const Matrix10& inverse, const NoiseLevels& noise, double stated_variance,
+                       bool radius_free) {
     const int unknowns = radius_free ? 10 : 9;
+    if (stated_variance > 0 && !beyond_stated(noise, stated_variance))
+        return inverse * noise.point_variance +
+               covariance_of_centres(sections, model, inverse, stated_variance);
     if (!noise.poses_disagree)
         return inverse * system.meat * inverse * (system.count / std::max(1.0, system.count - unknowns));
     const double student = student_quantile(0.975, noise.redundancy) / kNormal95;
@@ -463,18 +482,24 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     if (weak || ambiguous) return refused(TcpSphereStatus::undetermined, undetermined_sphere(result, weak));
     if (result.weakest_sigma_mm * 3 < kUsableTcp_mm) result.degenerate.clear();
 
+    const double turned =
+        options.robot_sigma_rad * (model.flange_from_sensor * result.working_point_mm).norm();
+    const double stated = options.robot_sigma_mm * options.robot_sigma_mm + turned * turned;
     result.status = TcpSphereStatus::ok;
     result.flange_from_sensor = model.flange_from_sensor;
     result.centre_base_mm = model.centre_base;
     result.radius_mm = model.radius;
-    write_statistics(model, covariance_of(sections, model, system, known.inverse, noise, radius_free),
+    write_statistics(model, covariance_of(sections, model, system, known.inverse, noise, stated, radius_free),
                      radius_free, result);
+    if (!radius_free)
+        result.scale =
+            sphere_scale(sections, model, noise.point_variance, std::max(stated, noise.centre_variance));
     write_poses(observations, sections, excluded, &model, result.report);
     if (options.thorough) result.report.hold_out = verify(sections, model, radius_free);
     result.mirrored = judge_axes(sections, observations, options, model, result.notices);
     if (const std::string rejected = left_out(result.report.poses); !rejected.empty())
         result.notices.push_back(Text("not used: {}", rejected));
-    if (noise.poses_disagree)
+    if (noise.poses_disagree && (stated == 0 || beyond_stated(noise, stated)))
         result.notices.push_back(
             Text("the poses disagree by {:.1f} times the sensor's own noise: the robot's poses are "
                  "less exact than the "

@@ -19,7 +19,9 @@
 // Noise model: independent radial noise of the points, its size estimated, which may vary over the arc
 // (heteroscedastic sandwich covariance). When the profiles disagree with one another by more than their own
 // noise explains (robot errors; F test at 99 %), an isotropic error of each s_i of the size that explains it
-// is propagated too, times Student's factor, so that value +- 1.96 sigma keeps holding 95 %.
+// is propagated too, times Student's factor, so that value +- 1.96 sigma keeps holding 95 %. Where the robot's
+// repeatability is stated, such an error of that size is always propagated, whether the profiles are many enough to show it
+// or not, and what they show counts only where it is beyond chance against the stated.
 //
 // Points (x, 0, z) never leave y = 0, so the sensor's Y axis enters through R's handedness alone: a profile
 // with x (or z) mirrored is fitted exactly as well by a sensor turned half about its Z (or X) axis. No
@@ -37,6 +39,7 @@
 #include <vector>
 
 #include "core/calibration/calibration.h"
+#include "core/calibration/field_scale.h"
 #include "core/geometry/pose.h"
 #include "core/profile/profile.h"
 
@@ -53,6 +56,8 @@ struct TcpSphereOptions {
     std::vector<std::string> exclude;  // ids left out of the solution; their residual is still given
     // Where the sensor should sit, when known: only used to recognise mirrored axes, never as a start.
     std::optional<Pose> nominal_flange_from_sensor;
+    // One arrival of the robot, an axis: its repeatability. 0: not stated, estimated where it shows.
+    double robot_sigma_mm = 0, robot_sigma_rad = 0;
     // false: many times quicker and for comparing many sets of poses: wrong poses are left out only where they show
     // without searching small subsets, and nothing is held out or proposed.
     bool thorough = true;
@@ -98,6 +103,8 @@ struct TcpSphereResult {
     double radius_sigma_mm = 0;                                  // 0 when the radius was given
     Eigen::Vector3d working_point_mm = Eigen::Vector3d::Zero();  // mean of s_i: the working distance
     double working_sigma_mm = 0;  // largest sigma of the working point in the flange frame
+    // Of the sensor's own millimetres, as the cuts show them; zero: they do not, or the radius was not given.
+    FieldScale scale;
     double weakest_sigma_mm = 0;  // largest sigma of any direction, rotations on a lever of 100 mm
     MirroredAxis mirrored = MirroredAxis::none;
     std::vector<Text> notices;            // plain words, worth a look

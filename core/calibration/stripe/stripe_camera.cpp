@@ -13,6 +13,7 @@
 #include "core/calibration/statistics.h"
 #include "core/calibration/stripe/stripe_line.h"
 #include "core/calibration/stripe/stripe_plane.h"
+#include "core/calibration/stripe/stripe_scale.h"
 #include "core/geometry/decompositions.h"
 #include "core/median.h"
 #include "core/numbers.h"
@@ -556,6 +557,12 @@ class Solver {
                 result_.plane_sigma_deg =
                     deg_from_rad(std::sqrt(std::max(fit_.covariance(p, p), fit_.covariance(p + 1, p + 1))));
                 result_.plane_sigma_mm = std::sqrt(fit_.covariance(p + 2, p + 2));
+                const Eigen::Index n = fit_.basis.cols();
+                Eigen::MatrixXd covariance(n + 3, n + 3);
+                covariance << fit_.covariance.topLeftCorner(n, n), fit_.covariance.block(0, p, n, 3),
+                    fit_.covariance.block(p, 0, 3, n), fit_.covariance.block(p, p, 3, 3);
+                result_.scale = stripe_scale(state_.intrinsics, result_.camera.width, result_.camera.height,
+                                             *state_.plane, fit_.basis, covariance, sensor_frame);
             }
         }
         if (!origins.empty()) {

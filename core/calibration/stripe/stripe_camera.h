@@ -22,6 +22,7 @@
 
 #include "core/calibration/board/board.h"
 #include "core/calibration/camera/plate_bundle.h"
+#include "core/calibration/field_scale.h"
 #include "core/error.h"
 
 namespace seamwright {
@@ -87,6 +88,7 @@ struct StripeCameraResult {
         Pose::Identity();  // sensor frame: y = normal, z towards the camera, origin on the optical axis
     std::optional<Pose> flange_from_camera, base_from_target;
     Matrix6 flange_from_camera_covariance = Matrix6::Zero();
+    FieldScale scale;             // of the millimetres that camera and plane give; zero without a plane
     double target_spread_mm = 0;  // rms distance of the plate's origin in the base from its mean
     double target_spread_max_mm = 0;
     std::vector<StripeFrameResult> frames;

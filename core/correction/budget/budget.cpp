@@ -73,6 +73,13 @@ struct Writer {
         term.input_sigma = input_sigma;
         outer(p.spread.bread * meat * p.spread.bread, term.covariance, term.sigma);
     }
+    // Of D itself.
+    void add_found(ErrorSource source, double input_sigma, const Matrix6& xi) const {
+        BudgetTerm& term = out.terms.emplace_back();
+        term.source = source;
+        term.input_sigma = input_sigma;
+        outer(xi, term.covariance, term.sigma);
+    }
     void outer(const Matrix6& xi, Matrix6& covariance, DofSigma& sigma) const {
         p.system.outer(xi, p.state, covariance, sigma.xyz_mm, sigma.abc_deg);
         sigma.abc_deg *= deg_from_rad(1);
@@ -92,8 +99,26 @@ double hand_eye_sigma(std::span<const BudgetSpot> spots, const SensorPrior& prio
     return n > 0 ? std::sqrt(sum / n) : 0;
 }
 
+// At the spots' references.
+double workobject_sigma(std::span<const BudgetSpot> spots, const Matrix6& covariance) {
+    double sum = 0;
+    for (const BudgetSpot& b : spots) {
+        Eigen::Matrix<double, 3, 6> j;
+        j << Eigen::Matrix3d::Identity(), -skew(b.spot.workobject_from_sensor * b.spot.reference_mm);
+        sum += (j * covariance * j.transpose()).trace() / 3;
+    }
+    return std::sqrt(sum / static_cast<double>(spots.size()));
+}
+
+double latency_travel(std::span<const BudgetSpot> spots, const SensorPrior& prior) {
+    double sum = 0, n = 0;
+    for (const BudgetSpot& b : spots)
+        if (b.spot.sensor == prior.id) sum += b.spot.latency_travel_mm * b.spot.latency_travel_mm, ++n;
+    return n > 0 ? prior.latency_sigma * std::sqrt(sum / n) : 0;
+}
+
 void add_sensor(const Writer& writer, const SensorPrior& prior, std::size_t of, const SharedBlock* block,
-                double hand_eye) {
+                double hand_eye, double latency) {
     const auto add = [&](ErrorSource source, double sigma, Eigen::Index from, Eigen::Index count) {
         if (!(sigma > 0)) return;
         Matrix6 meat = Matrix6::Zero();
@@ -104,9 +129,12 @@ void add_sensor(const Writer& writer, const SensorPrior& prior, std::size_t of, 
         writer.add(source, of, sigma, meat);
     };
     add(ErrorSource::hand_eye, hand_eye, 0, 6);
-    add(ErrorSource::scale_x, prior.scale_sigma.x(), 6, 1);
-    add(ErrorSource::scale_z, prior.scale_sigma.y(), 7, 1);
-    add(ErrorSource::shear, prior.shear_sigma, 8, 1);
+    add(ErrorSource::scale_x, prior.scale_sigma.x(), kScaleAt, 1);
+    add(ErrorSource::scale_z, prior.scale_sigma.y(), kScaleAt + 1, 1);
+    add(ErrorSource::shear, prior.shear_sigma, kShearAt, 1);
+    add(ErrorSource::latency, latency, kLatencyAt, 1);
+    add(ErrorSource::speed, latency > 0 ? prior.speed_sigma : 0, kSpeedAt, 1);
+    add(ErrorSource::sensor_drift, prior.drift_sigma_mm.norm() / std::sqrt(3.0), kDriftAt, 3);
 }
 
 }  // namespace
@@ -127,6 +155,12 @@ std::string_view to_string(ErrorSource source) {
             return "robot_taught";
         case ErrorSource::nozzle:
             return "nozzle";
+        case ErrorSource::offset:
+            return "offset";
+        case ErrorSource::workobject:
+            return "workobject";
+        case ErrorSource::robot_drift:
+            return "robot_drift";
         case ErrorSource::hand_eye:
             return "hand_eye";
         case ErrorSource::scale_x:
@@ -135,6 +169,12 @@ std::string_view to_string(ErrorSource source) {
             return "scale_z";
         case ErrorSource::shear:
             return "shear";
+        case ErrorSource::latency:
+            return "latency";
+        case ErrorSource::speed:
+            return "speed";
+        case ErrorSource::sensor_drift:
+            return "sensor_drift";
     }
     return "unknown";
 }
@@ -158,7 +198,12 @@ Expected<UncertaintyBudget> uncertainty_budget(std::span<const BudgetSpot> spots
     out.determined = p.spread.regular;
     if (!out.determined) return out;
     const Writer writer{p, out};
-    writer.outer(p.spread.covariance, out.covariance, out.sigma);
+    const RegionSystem::Added added = p.system.added(p.state);
+    writer.outer(p.spread.covariance + added.sum(), out.covariance, out.sigma);
+    if (options.robot_drift_sigma_mm > 0)
+        writer.add_found(ErrorSource::robot_drift, options.robot_drift_sigma_mm, added.robot_drift);
+    if (const Matrix6& c = options.workobject_covariance; !c.isZero(0))
+        writer.add_found(ErrorSource::workobject, workobject_sigma(spots, c), added.workobject);
     for (std::size_t n = 0; n < spots.size(); ++n)
         for (const Share& share : shares_of(spots[n], observations[n], as_taught)) {
             if (share.source == ErrorSource::travel ? spots[n].half_window_mm == 0
@@ -175,7 +220,7 @@ Expected<UncertaintyBudget> uncertainty_budget(std::span<const BudgetSpot> spots
         if (is_zero(options.sensors[i])) continue;
         add_sensor(writer, options.sensors[i], i,
                    p.shared.sensors.empty() ? nullptr : &p.shared.sensors[block],
-                   hand_eye_sigma(spots, options.sensors[i]));
+                   hand_eye_sigma(spots, options.sensors[i]), latency_travel(spots, options.sensors[i]));
         ++block;
     }
     return out;

@@ -9,7 +9,8 @@
 // so each has its share
 //     C_k = B (sum_n J_n^T Omega_n flat_n cov_k,n flat_n^T Omega_n J_n) B    of a spot,
 //     C_k = B (sum_j gain_s,j gain_s,j^T) B                                  of a sensor (columns j of it),
-// and the shares add up to the covariance of correction.h exactly. As taught the sensors' shares are 0.
+// and the shares add up to the covariance of correction.h exactly. As taught the sensors' shares are 0, but for drift;
+// work object and the robot's drift are shares by themselves.
 
 #include <span>
 #include <string_view>
@@ -27,11 +28,17 @@ enum class ErrorSource {
     robot_run,  // the arrival of the run
     reference,  // taught once, the same ever after, as all below
     robot_taught,
-    nozzle,  // of the bead, not of D: no term of an UncertaintyBudget (projects/proof/budget.h)
+    nozzle,       // of the bead, not of D: no term of an UncertaintyBudget (projects/proof/budget.h)
+    offset,       // a kept one that acts: no term either
+    workobject,   // that the path is laid in, against that of the measuring
+    robot_drift,  // of the robot as a whole, since the last check
     hand_eye,
     scale_x,
     scale_z,
-    shear
+    shear,
+    latency,
+    speed,  // of the run against that of the teaching
+    sensor_drift
 };
 std::string_view to_string(ErrorSource source);
 inline bool is_systematic(ErrorSource source) {
@@ -39,6 +46,10 @@ inline bool is_systematic(ErrorSource source) {
 }
 inline bool is_of_sensor(ErrorSource source) {
     return source >= ErrorSource::hand_eye;
+}
+// Stated as a share, 1/1.
+inline bool is_share(ErrorSource source) {
+    return (source >= ErrorSource::scale_x && source <= ErrorSource::shear) || source == ErrorSource::speed;
 }
 
 // A spot before its part is displaced, and what its noise is made of.
@@ -53,10 +64,12 @@ struct BudgetSpot {
 
 struct BudgetTerm {
     ErrorSource source = ErrorSource::feature;
-    std::size_t of = 0;  // index of the spot, or of the sensor in CorrectionOptions::sensors
+    std::size_t of =
+        0;  // index of the spot, or of the sensor in CorrectionOptions::sensors; 0 of what D alone errs by
     // What errs, one standard deviation: mm along an observed axis of the spot (mean square of them), of the
     // travel mm along it, of hand-eye mm of a point measured along x or z (mean square over the sensor's spots,
-    // from the reference), of scale and shear 1/1.
+    // from the reference), of scale, shear and speed 1/1, of latency mm along the travel (mean square), of drift and work
+    // object mm (mean square of X, Y and Z).
     double input_sigma = 0;
     Matrix6 covariance = Matrix6::Zero();  // its share of D's, tangent of pose.h, work object
     DofSigma sigma;                        // the same of the printed numbers

@@ -23,6 +23,8 @@ CorrectionDraws::CorrectionDraws(std::span<const BudgetSpot> spots, const Correc
                                  const Displacement& displacement, std::uint64_t seed)
     : spots_(spots.begin(), spots.end()),
       priors_(options.sensors),
+      workobject_root_(root_of<Matrix6>(options.workobject_covariance)),
+      robot_drift_mm_(options.robot_drift_sigma_mm),
       sensors_(options.sensors.size()),
       displacement_(displacement.workobject_from_movedworkobject),
       rng_(seed) {
@@ -87,6 +89,10 @@ std::vector<SpotObservation>& CorrectionDraws::next() {
         s.true_from_read(2, 2) += priors_[i].scale_sigma.y() * normal();
         s.true_from_read(0, 2) += priors_[i].shear_sigma * normal();
         s.read_from_true = s.true_from_read.inverse();
+        if (priors_[i].latency_sigma > 0) s.latency = priors_[i].latency_sigma * normal();
+        if (priors_[i].speed_sigma > 0) s.speed = priors_[i].speed_sigma * normal();
+        for (int k = 0; k < 3; ++k)
+            if (priors_[i].drift_sigma_mm[k] > 0) s.drift[k] = priors_[i].drift_sigma_mm[k] * normal();
     }
     const Sensor perfect;
     drawn_ = bare_;
@@ -98,9 +104,14 @@ std::vector<SpotObservation>& CorrectionDraws::next() {
         SpotObservation& o = drawn_[n];
         const Matrix6 mean_arrival =
             roots.arrival / std::sqrt(static_cast<double>(b.spot.reference_arrivals));
-        o.reference_mm = read(b, sensor, arrived(w, mean_arrival), Pose::Identity()) +
+        const auto further = [&](double share) {
+            Pose pose = w;
+            pose.translation() += share * b.spot.latency_travel_mm * w.linear().col(1);
+            return pose;
+        };
+        o.reference_mm = read(b, sensor, arrived(further(sensor.latency), mean_arrival), Pose::Identity()) +
                          scattered(roots.reference, b.reference_degrees);
-        Pose there = w;
+        Pose there = further(sensor.latency + sensor.speed);
         if (b.half_window_mm > 0) {
             std::uniform_real_distribution<double> window(-b.half_window_mm, b.half_window_mm);
             there.translation() += window(rng_) * w.linear().col(1);
@@ -109,9 +120,25 @@ std::vector<SpotObservation>& CorrectionDraws::next() {
         for (int i = 0; i < 3; ++i) noise[i] += b.stated_sigma_mm * normal();
         for (int i = 0; i < 3; ++i)
             if (!(b.spot.weights[i] > 0)) noise[i] = 0;
+        for (int i = 0; i < 3; ++i)
+            if (i != 1 || b.spot.weights.y() > 0) noise[i] -= sensor.drift[i];
         o.measured_mm = read(b, sensor, arrived(there, roots.arrival), displacement_) + noise;
     }
     return drawn_;
+}
+
+Pose CorrectionDraws::laid(const Pose& found) {
+    Pose out = found;
+    if (!workobject_root_.isZero(0)) {
+        Vector6 v;
+        for (int k = 0; k < 6; ++k) v[k] = normal();
+        const Vector6 eta = workobject_root_ * v;
+        const Pose off = make_pose(rotation_exp(eta.tail<3>()), eta.head<3>());
+        out = off * out * off.inverse();
+    }
+    if (robot_drift_mm_ > 0)
+        for (int k = 0; k < 3; ++k) out.translation()[k] += robot_drift_mm_ * normal();
+    return out;
 }
 
 namespace {

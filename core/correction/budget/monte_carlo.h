@@ -5,7 +5,7 @@
 // A draw is made from what happens, not from the linearised terms of the budget: sensors that sit and scale
 // otherwise than calibrated, references taught from another arrival than stated, a displaced contour cut where
 // the laser plane truly is. As the residual of correction.h has it, the contour runs along the Y of the sensor as
-// it truly sits. Hand-eye, scale, shear, arrivals, the spot's own sigma: normal; feature and reference: normal, or
+// it truly sits. Hand-eye, scale, shear, latency, speed, drift, work object, arrivals, the spot's own sigma: normal; feature and reference: normal, or
 // multivariate t where their covariance has finite degrees of freedom (JCGM 101, 6.4.9 and 6.4.8); travel of the
 // trigger: uniform.
 
@@ -27,6 +27,9 @@ class CorrectionDraws {
                     const Displacement& displacement, std::uint64_t seed);
     // Everything drawn anew: what the spots say of one part. Valid until the next call.
     std::vector<SpotObservation>& next();
+    // What the path is moved by where the correction found `found`: the work object that it is laid in and the robot's drift,
+    // drawn anew.
+    Pose laid(const Pose& found);
 
   private:
     struct SpotRoots {
@@ -37,6 +40,8 @@ class CorrectionDraws {
     struct Sensor {
         Pose eye = Pose::Identity();  // calibrated_from_true
         Eigen::Matrix3d true_from_read = Eigen::Matrix3d::Identity(), read_from_true = true_from_read;
+        double latency = 0, speed = 0;  // shares of the travel
+        Eigen::Vector3d drift = Eigen::Vector3d::Zero();
     };
     double normal() { return normal_(rng_); }
     Eigen::Vector3d scattered(const Eigen::Matrix3d& root, double degrees);
@@ -49,6 +54,8 @@ class CorrectionDraws {
     std::vector<SpotRoots> roots_;
     std::vector<SensorPrior> priors_;
     std::vector<Matrix6> eye_roots_;
+    Matrix6 workobject_root_;
+    double robot_drift_mm_;
     std::vector<Sensor> sensors_;
     Pose displacement_;
     std::mt19937_64 rng_;

@@ -57,7 +57,14 @@ Expected<CalibrationSolution> solve_lut(const json& data, const ExcludedIds& exc
     }
     result["wrong_pairs"] = std::move(wrong);
     result["table_file"] = nullptr;
-    if (known) solution.found = PixelTable{std::move(solved.table)};
+    if (known) {
+        solution.found = PixelTable{std::move(solved.table)};
+        std::vector<Eigen::Vector2d> places;  // x and z of each in turn
+        const auto& parameters = solved.report.parameters;
+        for (std::size_t i = 0; i + 1 < parameters.size(); i += 2)
+            places.emplace_back(parameters[i].value, parameters[i + 1].value);
+        put_scale(field_scale(places, solved.report.covariance), solution);
+    }
     solution.report = std::move(solved.report);
     finish_document(solution);
     return solution;

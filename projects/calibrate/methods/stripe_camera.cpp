@@ -92,6 +92,7 @@ Expected<CalibrationSolution> solve_stripe_camera(const json& data, const Exclud
         if (solved.flange_from_camera)
             found.flange_from_camera = {*solved.flange_from_camera, solved.flange_from_camera_covariance};
         solution.found = std::move(found);
+        put_scale(solved.scale, solution);
     }
     result["status"] = known ? "ok" : "undetermined";
     result["images"] = observations.size();

@@ -1,5 +1,5 @@
 // {"radius_mm":r or null,"observations":[{"id","base_from_flange":POSE,"profile":[[x,z],..]}],
-//  "nominal_flange_from_sensor":POSE?}; z null = no return.
+//  "nominal_flange_from_sensor":POSE?,"robot":{"sigma_mm","sigma_deg"}?}; z null = no return; robot: of one arrival, an axis.
 // ->
 // {"status","flange_from_sensor","centre_base_mm","radius_mm","rms_mm","noise_mm","sigma":{"xyz_mm","abc_deg","centre_mm",
 //     "radius_mm","working_mm"},"covariance_pose" 6x6 (mm,
@@ -45,6 +45,7 @@ Expected<CalibrationSolution> solve_tcp_sphere(const json& data, const ExcludedI
         result["sigma"] = std::move(sigma);
         result["centre_covariance_mm2"] = matrix_json(solved.centre_covariance);
         result["covariance_pose"] = matrix_json(solved.covariance);
+        put_scale(solved.scale, solution);
         result["working_point_mm"] = vector_json(solved.working_point_mm);
     } else {
         result["sigma"] = nullptr;
@@ -110,7 +111,7 @@ CalibrationMethod tcp_sphere_method() {
     m.id = "tcp-sphere";
     m.help = "Sensor on the flange from profiles of one sphere";
     m.usage = "sphere.json --exclude P3";
-    m.layout = R"({"radius_mm":R or null,"nominal_flange_from_sensor":POSE?,
+    m.layout = R"({"radius_mm":R or null,"nominal_flange_from_sensor":POSE?,"robot":{"sigma_mm","sigma_deg"}?,
    "observations":[{"id"?,"base_from_flange":POSE,"profile":[[x,z],..]},..]}   mm; z null: no return)";
     m.example = tcp_sphere_example;
     m.poses = {{"observations", kRobotPose}};

@@ -91,6 +91,17 @@ Expected<Calibration> calibration_of_solution(const CalibrationMethod& method, c
         c.model = base->model;
         c.flange_from_sensor = base->flange_from_sensor;
         c.covariance = base->covariance;
+        c.scale_sigma = base->scale_sigma;
+        c.shear_sigma = base->shear_sigma;
+    }
+    if (solution.scale) {
+        // Where the sensor sits says something of its millimetres; a new camera or table says all.
+        const bool same_millimetres = base && std::holds_alternative<SensorOnFlange>(solution.found);
+        const FieldScale scale =
+            same_millimetres ? better_known({base->scale_sigma, base->shear_sigma, false}, *solution.scale)
+                             : *solution.scale;
+        c.scale_sigma = scale.scale_sigma;
+        c.shear_sigma = scale.shear_sigma;
     }
     c.method = method.id;
     c.verdict = judgement.verdict;

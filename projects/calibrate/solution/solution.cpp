@@ -238,6 +238,33 @@ void finish_document(CalibrationSolution& solution) {
     put_texts(d, "degenerate", solution.degenerate);
 }
 
+void put_scale(const FieldScale& scale, CalibrationSolution& solution) {
+    if (scale.scale_sigma.isZero(0) && scale.shear_sigma == 0) return;
+    solution.scale = scale;
+    solution.document["scale_sigma"] = {scale.scale_sigma.x(), scale.scale_sigma.y()};
+    solution.document["shear_sigma"] = scale.shear_sigma;
+    if (scale.shown) solution.document["scale_shown"] = true;
+}
+
+namespace {
+
+std::optional<FieldScale> scale_in(const json& document) {
+    const auto scale = document.find("scale_sigma");
+    const double shear = number_or_none(document, "shear_sigma");
+    if (scale == document.end() || !scale->is_array() || scale->size() != 2 || !(*scale)[0].is_number() ||
+        !(*scale)[1].is_number())
+        return std::nullopt;
+    const FieldScale found{{(*scale)[0].get<double>(), (*scale)[1].get<double>()},
+                           shear,
+                           document.value("scale_shown", json()) == json(true)};
+    constexpr double kMost = 0.1;
+    const bool sound = found.scale_sigma.minCoeff() >= 0 && found.scale_sigma.maxCoeff() <= kMost &&
+                       shear >= 0 && shear <= kMost;
+    return sound ? std::optional(found) : std::nullopt;
+}
+
+}  // namespace
+
 Expected<CalibrationSolution> solution_from_document(const json& document) {
     if (!document.is_object()) return input_error("this is no answer of a calibration", "");
     CalibrationSolution solution;
@@ -252,6 +279,7 @@ Expected<CalibrationSolution> solution_from_document(const json& document) {
         }
     SEAM_TRY(auto found, finding_in(document));
     solution.found = std::move(found);
+    solution.scale = scale_in(document);
     solution.document = document;
     return solution;
 }

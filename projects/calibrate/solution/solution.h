@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/calibration/calibration.h"
+#include "core/calibration/field_scale.h"
 #include "core/calibration/pose/static_chain.h"
 #include "core/calibration/sphere/tcp_sphere.h"
 #include "core/profile/sensor_model.h"
@@ -71,6 +72,7 @@ using CalibrationFinding =
 struct CalibrationSolution {
     CalibrationReport report;  // its judgement is the answer's verdict
     CalibrationFinding found;
+    std::optional<FieldScale> scale;      // of the sensor's own millimetres, where the method tells
     std::vector<Text> notices;            // sentences worth a look
     std::vector<Text> degenerate;         // what the poses leave open
     std::vector<PoseProposal> proposals;  // poses that would help most, best first
@@ -85,6 +87,9 @@ Expected<CalibrationSolution> solution_from_document(const nlohmann::json& docum
 
 // Puts the report, notices and what the poses leave open into the document, beside a method's own fields.
 void finish_document(CalibrationSolution& solution);
+// "scale_sigma" [x, z] and "shear_sigma", 1/1, and "scale_shown" into solution and document; a scale that is not told is
+// left out.
+void put_scale(const FieldScale& scale, CalibrationSolution& solution);
 // The same of a judgement alone: "verdict", "reason", "cure".
 void put_judgement(const Judgement& judgement, nlohmann::json& document);
 

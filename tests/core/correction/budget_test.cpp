@@ -7,6 +7,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <set>
 
 #include "core/correction/budget/monte_carlo.h"
 #include "core/correction/forecast.h"
@@ -128,6 +129,51 @@ void shares_add_up(unsigned seed, bool priors) {
 TEST(Budget, SharesAddUpToWhatTheCorrectionStates) {
     shares_add_up(1, true);
 }
+TEST(Budget, SharesOfTriggerDriftAndWorkObjectAddUp) {
+    Rng rng(21);
+    for (int i = 0; i < 20; ++i) {
+        World w = world(rng, 5 + i % 4);
+        for (SensorPrior& p : w.options.sensors) {
+            p.latency_sigma = 1;
+            p.speed_sigma = 0.1;
+            p.drift_sigma_mm = {0.03, 0.02, 0.04};
+        }
+        for (SpotObservation& s : w.spots) s.latency_travel_mm = uniform(rng, 0.2, 1);
+        w.options.robot_drift_sigma_mm = 0.02;
+        w.options.workobject_covariance = some_covariance(rng, 0.05, 0.02);
+        if (i % 3 == 2) w.spots[1].curve = ContourCurve{{0.05, 1e-4, 0}, {0.02, 1e-4, 0}, -20, 20};
+        const Displacement d = i % 4 == 0 ? Displacement{} : moved(rng, 10, 1);
+        const auto spots = budget_spots(w.spots);
+        const auto budget = uncertainty_budget(spots, w.options, d);
+        ASSERT_TRUE(budget) << budget.error().sentence();
+        if (!budget->determined) continue;
+        Matrix6 sum = Matrix6::Zero(), systematic = Matrix6::Zero();
+        std::set<ErrorSource> sources;
+        for (const BudgetTerm& t : budget->terms) {
+            sum += t.covariance;
+            if (is_systematic(t.source)) systematic += t.covariance;
+            sources.insert(t.source);
+        }
+        const PredictedCovariance at = predicted(spots, w.options, d);
+        expect_equal(sum, at.sum);
+        expect_equal(budget->covariance, at.sum);
+        for (int k = 0; k < 6; ++k) EXPECT_NEAR(systematic(k, k), at.systematic(k, k), 1e-9 * at.sum(k, k));
+        for (const ErrorSource source : {ErrorSource::latency, ErrorSource::speed, ErrorSource::sensor_drift,
+                                         ErrorSource::robot_drift, ErrorSource::workobject})
+            EXPECT_TRUE(sources.count(source)) << to_string(source);
+        // Where the part has not moved, latency and work object cost nothing; drift does.
+        for (const BudgetTerm& t : budget->terms) {
+            if (i % 4 != 0) continue;
+            if (t.source == ErrorSource::latency || t.source == ErrorSource::workobject) {
+                EXPECT_LT(t.covariance.diagonal().head<3>().maxCoeff(), 1e-12) << to_string(t.source);
+            }
+            if (t.source == ErrorSource::sensor_drift || t.source == ErrorSource::robot_drift) {
+                EXPECT_GT(t.covariance.diagonal().head<3>().maxCoeff(), 1e-7) << to_string(t.source);
+            }
+        }
+    }
+}
+
 TEST(Budget, SharesAddUpWithoutPriors) {
     shares_add_up(2, false);
 }

@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+#include <array>
+
 #include "core/correction/forecast.h"
 #include "tests/core/correction/trials.h"
 
@@ -134,33 +137,44 @@ TEST(Nuisance, TermsAreTheDerivativesOfTheResidual) {
     correction::SharedRoot unit;
     unit.hand_eye.setIdentity();
     unit.scale.setOnes();
+    unit.drift.setOnes();
+    unit.latency = unit.speed = 1;
     for (int i = 0; i < 50; ++i) {
         const Pose w = make_pose(any_rotation(rng), 500 * gaussian(rng));
         const Pose d = random_displacement(rng, 15, 3, w.translation());
         const Eigen::Vector3d r(uniform(rng, -20, 20), uniform(rng, -1, 1), uniform(rng, -15, 15));
         const Eigen::Vector3d m = r + 5 * gaussian(rng);
-        const auto residual = [&](const Eigen::Matrix<double, 9, 1>& b) {
+        const double travel = uniform(rng, -2, 2);
+        const auto residual = [&](const Eigen::Matrix<double, correction::kShared, 1>& b) {
             const Pose eye = make_pose(rotation_exp(b.segment<3>(3)), b.head<3>());
             Eigen::Matrix3d bent = Eigen::Matrix3d::Identity();
             bent(0, 0) += b[6];
             bent(2, 2) += b[7];
             bent(0, 2) += b[8];
             const Pose there = w * eye;
-            return Eigen::Vector3d(bent * r - there.inverse() * (d.inverse() * (there * (bent * m))));
+            // A latency puts both cuts further along, the run's by another share where it is driven at another speed.
+            const Eigen::Vector3d taught = bent * r + travel * b[9] * Eigen::Vector3d::UnitY();
+            const Eigen::Vector3d seen =
+                bent * m + travel * (b[9] + b[10]) * Eigen::Vector3d::UnitY() + b.tail<3>();
+            return Eigen::Vector3d(taught - there.inverse() * (d.inverse() * (there * seen)));
         };
         correction::SharedGeometry g;
         g.axes = w.linear();
         g.origin = w.translation();
         g.reference = r;
         g.measured = m;
+        g.latency_travel = travel;
         const Eigen::Vector3d y = w.inverse() * (d.inverse() * (w * m));
-        for (int k = 0; k < 9; ++k) {
-            const double h = k < 3 ? 1e-3 : 1e-6;
-            Eigen::Matrix<double, 9, 1> b = Eigen::Matrix<double, 9, 1>::Zero();
+        for (int k = 0; k < correction::kShared; ++k) {
+            const double h = k < 3 || k >= correction::kLatencyAt ? 1e-3 : 1e-6;
+            Eigen::Matrix<double, correction::kShared, 1> b =
+                Eigen::Matrix<double, correction::kShared, 1>::Zero();
             b[k] = h;
             const Eigen::Vector3d slope = (residual(b) - residual(-b)) / (2 * h);
             for (int axis = 0; axis < 3; ++axis) {
-                const auto row = correction::shared_row(g, unit, axis, d.linear() * w.linear().col(axis), y);
+                correction::SharedVector row;
+                correction::shared_row(g, unit, Eigen::Vector3d::Unit(axis),
+                                       d.linear() * w.linear().col(axis), y, row.data());
                 EXPECT_NEAR(row[k], slope[axis], 1e-6 * (1 + slope.norm())) << k << " " << axis;
             }
         }
@@ -181,7 +195,12 @@ TEST(Nuisance, OneArrivalMovesAPointAsStated) {
         const Eigen::Vector3d e = w.inverse() * moved - p;
         scatter += e * e.transpose() / kDraws;
     }
-    const Eigen::Matrix3d stated = correction::arrival_covariance(w, c, p);
+    const Matrix6 along = correction::arrival_along_sensor(w, c);
+    const Eigen::Matrix3d stated = correction::arrival_covariance(along, p);
+    Eigen::Matrix3d flat = stated;  // without the travel: x and z alone
+    flat.row(1).setZero();
+    flat.col(1).setZero();
+    EXPECT_LT((correction::arrival_covariance(along, p, false) - flat).norm(), 1e-12);
     EXPECT_LT((scatter - stated).norm(), 0.04 * stated.norm());
 }
 
@@ -224,6 +243,77 @@ TEST(Nuisance, PartsAddUpAndGrowWithTheDisplacement) {
         EXPECT_LT((forecast->systematic - solved->covariance_systematic).norm(),
                   0.02 * solved->covariance_systematic.norm());
     }
+}
+
+// Drawn from what happens: sensors that have moved since the check, a robot that has wandered, cuts further along the
+// travel than the controller told, a path laid in another work object.
+TEST(Nuisance, TriggerDriftAndWorkObjectCoverAsStated) {
+    Rng rng(13);
+    std::normal_distribution<double> normal;
+    constexpr int kTrials = 1500;
+    const Eigen::Vector3d middle(900, -400, 250), bead(1300, -150, 250);
+    int trials = 0, inside = 0;
+    std::array<int, 6> dof{};
+    while (trials < kTrials) {
+        World w = world(rng, 8);
+        w.options.sensors.resize(1);
+        SensorPrior& p = w.options.sensors[0];
+        p = SensorPrior{};
+        p.id = "A";
+        p.latency_sigma = 1;
+        p.speed_sigma = 0.2;
+        p.drift_sigma_mm = {0.05, 0.03, 0.04};
+        w.options.robot_drift_sigma_mm = 0.03;
+        w.options.workobject_covariance = some_covariance(rng, 0.05, 0.03);
+        const Pose d = random_displacement(rng, 15, 1.5, middle);
+        const double late = normal(rng), faster = 0.2 * normal(rng), robot = 0.03;
+        const Eigen::Vector3d drift(0.05 * normal(rng), 0.03 * normal(rng), 0.04 * normal(rng)),
+            wandered(robot * normal(rng), robot * normal(rng), robot * normal(rng));
+        for (SpotObservation& s : w.spots) {
+            s.sensor = "A";
+            s.sigma_mm = 0.02;
+            s.reference_covariance_mm2.reset();
+            s.robot_covariance.reset();
+            s.latency_travel_mm = uniform(rng, 0.5, 2);
+            const Pose& at = s.workobject_from_sensor;
+            const Eigen::Vector3d point = at * s.reference_mm, along = at.linear().col(1);
+            const auto cut = [&](const Pose& moved, double share) {
+                Pose plane = at;
+                plane.translation() += share * s.latency_travel_mm * along;
+                return Eigen::Vector3d(pierced(plane, moved * point, moved.linear() * along));
+            };
+            // The robot stands where it has wandered to, so that the part seems to stand back by as much.
+            Pose seen = d;
+            seen.translation() -= wandered;
+            s.reference_mm = cut(Pose::Identity(), late);
+            const Eigen::Vector3d e = s.sigma_mm * gaussian(rng);
+            s.measured_mm = cut(seen, late + faster) - drift + Eigen::Vector3d(e.x(), 0, e.z());
+            s.measured_mm.y() = 0;
+            s.reference_mm.y() = 0;
+        }
+        const auto solved = solve_region(w.spots, w.options);
+        ASSERT_TRUE(solved) << solved.error().sentence();
+        if (solved->status != CorrectionStatus::ok) continue;
+        ++trials;
+        const Vector6 eta = draw<6>(rng, w.options.workobject_covariance);
+        const Pose off = make_pose(rotation_exp(eta.tail<3>()), eta.head<3>());
+        const Pose laid = off * solved->displacement.workobject_from_movedworkobject * off.inverse();
+        const Vector6 miss = difference(d, laid);
+        for (int i = 0; i < 6; ++i)
+            dof[static_cast<std::size_t>(i)] +=
+                std::abs(miss[i]) <= 1.96 * std::sqrt(solved->covariance(i, i));
+        Eigen::Matrix<double, 3, 6> j;
+        j << Eigen::Matrix3d::Identity(), -skew(laid.linear() * bead);
+        const Eigen::Matrix3d c = j * solved->covariance * j.transpose();
+        const Eigen::Vector3d there = d * bead - laid * bead;
+        inside += there.dot(Eigen::Vector3d(c.ldlt().solve(there))) <= 7.8147;
+    }
+    for (const int count : dof) {
+        EXPECT_GE(count, 0.93 * kTrials);
+        EXPECT_LE(count, 0.97 * kTrials);
+    }
+    EXPECT_GE(inside, 0.93 * kTrials);
+    EXPECT_LE(inside, 0.97 * kTrials);
 }
 
 TEST(Nuisance, AWrongSpotIsStillNamedAndAGoodOneNotAccused) {

@@ -31,7 +31,7 @@ MEMBERS(SpotLight, a, b, c, d, e)
 MEMBERS(PaintLight, a, b)
 MEMBERS(PushRecord, a, b, c, d, e, f, g)
 MEMBERS(RegionRecord, a, b, c, d, e, f, g, h, i)
-MEMBERS(ActingDrift, a, b, c, d, e, f, g, h)
+MEMBERS(ActingDrift, a, b, c, d, e, f, g, h, i)
 MEMBERS(DriftWatch, a, b, c, d, e, f, g, h, i, j, k, l)
 MEMBERS(LearntDrift, a, b, c, d, e, f, g, h)
 MEMBERS(LearntDirection, a, b, c, d, e, f)
@@ -48,14 +48,14 @@ MEMBERS(PanelMeasurement, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p)
 MEMBERS(PanelFit, a, b, c, d, e, f, g, h, i, j, k, l, m)
 MEMBERS(PanelSpotResult, a, b, c, d, e, f, g)
 MEMBERS(PanelRecord, a, b, c, d, e, f, g, h, i, j, k)
-MEMBERS(PartSetup, a, b, c, d)
+MEMBERS(PartSetup, a, b, c, d, e)
 MEMBERS(PartType, a, b, c)
 MEMBERS(SensorSetup, a, b, c, d, e, f, g)
 MEMBERS(PeakOptions, a, b, c, d, e, f, g)
 MEMBERS(FilterOptions, a, b, c, d, e, f, g)
-MEMBERS(RobotSetup, a, b, c, d, e, f, g, h)
+MEMBERS(RobotSetup, a, b, c, d, e, f, g, h, i)
 MEMBERS(NozzleTip, a, b, c, d)
-MEMBERS(Calibration, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o)
+MEMBERS(Calibration, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q)
 MEMBERS(FeatureRecipe, a, b, c, d)
 MEMBERS(Spot, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x)
 MEMBERS(DrawingOrigin, a, b, c, d, e, f)
@@ -87,7 +87,7 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     region.correction->spots.resize(1);
     region.offset.emplace();
     region.modes.emplace();
-    region.drift.emplace();
+    region.drift.emplace().standing_mm = 0.01;
     const auto r = to_json_document(region);
     whole(region, r);
     whole(*region.offset, r["offset"]);
@@ -116,7 +116,9 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     whole(panel.fit->spots[0], p["fit"]["spots"][0]);
 
     whole(PartType{}, to_json_document(PartType{}));
-    whole(PartSetup{}, to_json_document(PartSetup{}), 1);  // the mesh is a row of its own
+    PartSetup part;
+    part.workobject_covariance.setIdentity();
+    whole(part, to_json_document(part), 1);  // the mesh is a row of its own
     SensorSetup sensor;
     sensor.filter.as_delivered = true;
     const auto c = to_json_document(sensor);
@@ -124,10 +126,13 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     whole(sensor.peaks, c["peaks"]);
     whole(sensor.filter, c["filter"]);
     RobotSetup robot;
+    robot.speed_sigma = 0.1;
     robot.collisions = {"2026-03-05T00:00:00Z"};
     whole(robot, to_json_document(robot));
     Calibration touched;
     touched.nozzle.emplace();
+    touched.scale_sigma.setConstant(1e-3);
+    touched.shear_sigma = 1e-3;
     const auto n = to_json_document(touched);
     whole(touched, n);
     whole(*touched.nozzle, n["nozzle"]);

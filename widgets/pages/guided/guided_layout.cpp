@@ -190,7 +190,22 @@ void GuidedPage::make_verdict(QVBoxLayout& box) {
             said_->hide();
             calibration_.solve();
         });
-    inside->addLayout(make_row({solve_}));
+    detect_ = make_button(
+        "detect_convention", "search", tr("Which convention?"),
+        tr("Tries the poses in every convention of angles, units, order and direction; changes nothing"),
+        [this] {
+            said_->hide();
+            calibration_.detect_convention();
+        });
+    take_convention_ =
+        make_button("take_convention", "check", tr("Read them so"),
+                    tr("Reads all poses of this session in the convention found; undo takes it back"),
+                    [this] { done(calibration_.take_convention()); });
+    inside->addLayout(make_row({solve_, detect_}));
+    convention_ = make_text({});
+    convention_->setObjectName("calibration_convention");
+    inside->addWidget(convention_);
+    inside->addLayout(make_row({take_convention_}));
     parameters_ =
         make_table("calibration_parameters", {tr("Parameter"), tr("Value"), tr("1 sigma"), tr("Unit")},
                    tr("What was found, and how sure it is"));

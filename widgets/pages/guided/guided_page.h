@@ -52,6 +52,7 @@ class GuidedPage : public QWidget {
     void refresh_coverage();
     void refresh_next();
     void refresh_verdict();
+    void refresh_convention();
     void refresh_use();
     void refresh_busy();
     void refresh_live();
@@ -82,8 +83,10 @@ class GuidedPage : public QWidget {
     TargetView* target_;
     QPushButton *undo_, *redo_, *needs_, *capture_, *automatic_, *load_, *load_folder_, *set_target_,
         *go_there_, *copy_next_;
-    QPushButton *verification_, *remove_, *solve_, *cancel_, *verify_, *use_, *keep_, *anew_;
-    QLabel *next_, *next_words_, *count_, *verdict_, *reason_, *verified_, *stands_, *compared_, *used_;
+    QPushButton *detect_, *take_convention_, *verification_, *remove_, *solve_, *cancel_, *verify_, *use_,
+        *keep_, *anew_;
+    QLabel *convention_, *next_, *next_words_, *count_, *verdict_, *reason_, *verified_, *stands_, *compared_,
+        *used_;
     QTableWidget *table_, *parameters_;
     CoverageView* coverage_;
     QProgressBar* progress_;

@@ -310,7 +310,27 @@ void GuidedPage::refresh_next() {
                                         shifts.isEmpty() ? tr("nothing") : shifts.join(", ")));
 }
 
+// Offered, never taken by itself.
+void GuidedPage::refresh_convention() {
+    const ConventionAnswer* answer = calibration_.convention();
+    detect_->setVisible(calibration_.convention_in_doubt());
+    detect_->setEnabled(!calibration_.busy());
+    convention_->setVisible(answer);
+    take_convention_->setVisible(answer && !answer->offer.is_null());
+    if (!answer) return;
+    QStringList lines{shown(answer->found.sentence)};
+    const auto residual = [](const std::optional<PoseReading>& reading) {
+        return reading && reading->fit ? number(reading->fit->residual_mm, 3) : QStringLiteral("-");
+    };
+    lines << tr("Residual as given %1 mm, in the best other reading %2 mm")
+                 .arg(answer->found.as_given.fit ? number(answer->found.as_given.fit->residual_mm, 3)
+                                                 : QStringLiteral("-"),
+                      residual(answer->found.best));
+    convention_->setText(lines.join(QChar('\n')));
+}
+
 void GuidedPage::refresh_verdict() {
+    refresh_convention();
     const CalibrationSession& s = calibration_.session();
     const CalibrationSolution* solution = s.solution();
     solve_box_->setVisible(!s.state().captures.empty());

@@ -4946,8 +4946,12 @@ ausgelassen</translation>
 <context>
     <name>seamwright::RunPage</name>
     <message>
-        <source>sigma %1 random, %2 systematic</source>
-        <translation>Sigma %1 zufällig, %2 systematisch</translation>
+        <source>random %1</source>
+        <translation>zufällig %1</translation>
+    </message>
+    <message>
+        <source>systematic %1</source>
+        <translation>systematisch %1</translation>
     </message>
     <message>
         <source>pushed, outcome not recorded</source>

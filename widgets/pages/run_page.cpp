@@ -289,10 +289,8 @@ void RunPage::show_run(std::shared_ptr<const RunRecord> run) {
             const RegionCorrection& c = *region.correction;
             row << head(region.gate_passed ? tr("passed the gate")
                                            : tr("%1, refused").arg(shown_word(to_string(c.status)))) +
-                       QChar('\n') +
-                       tr("sigma %1 random, %2 systematic")
-                           .arg(number(c.sigma_random.xyz_mm.maxCoeff(), 3),
-                                number(c.sigma_systematic.xyz_mm.maxCoeff(), 3))
+                       QChar('\n') + tr("random %1").arg(number(c.sigma_random.xyz_mm.maxCoeff(), 3)) +
+                       QChar('\n') + tr("systematic %1").arg(number(c.sigma_systematic.xyz_mm.maxCoeff(), 3))
                 << moves.join("\n") << turns.join("\n");
         } else {
             row << head(tr("not solved")) << QStringLiteral("-") << QStringLiteral("-");

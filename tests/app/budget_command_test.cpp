@@ -96,6 +96,43 @@ TEST_F(BudgetCommand, EveryRegionAndMeasurand) {
         EXPECT_EQ(row["u"] == 0, row["source"] == "hand_eye") << row["source"];
 }
 
+TEST_F(BudgetCommand, WhatNobodyMeasuresIsStatedAndKept) {
+    const auto across = [](const json& j, const std::string& source) {
+        double squares = 0;
+        for (const json& row : j["regions"][0]["measurands"][0]["rows"])
+            if (row["source"] == source) squares += std::pow(row["u"].get<double>(), 2);
+        return std::sqrt(squares);
+    };
+    const std::vector<std::string> moved{"--displacement", kMoved, "--region", "inner"};
+    EXPECT_EQ(across(answer(moved, 0), "workobject"), 0);
+    std::vector<std::string> stated = moved;
+    stated.insert(stated.end(), {"--state", "workobject_mm=2", "--state", "A:scale_x=0.001"});
+    const json j = answer(stated, 0);
+    EXPECT_GT(across(j, "workobject"), 0);
+    EXPECT_GT(across(j, "scale_x"), 0);
+    EXPECT_EQ(answer(moved, 0)["regions"], j["regions"]) << "kept in the project";
+    // Twice as much stated is twice as much in the budget.
+    stated[5] = "workobject_mm=4";
+    EXPECT_NEAR(across(answer(stated, 0), "workobject"), 2 * across(j, "workobject"), 1e-12);
+}
+
+TEST_F(BudgetCommand, ARefusedStatementChangesNothing) {
+    const std::string f = file.string();
+    refused({f, "--state", "workobject_mm"}, "NAME=VALUE");
+    refused({f, "--state", "workobject_mm=nan"}, "NAME=VALUE");
+    refused({f, "--state", "workobject_mm=-1"}, "NAME=VALUE");
+    refused({f, "--state", "workobject_mm=1000"}, "one standard deviation is meant");
+    refused({f, "--state", "nobody:speed_change=0.1"}, "no robot \"nobody\"");
+    refused({f, "--state", "nobody:shear=0.001"}, "no sensor \"nobody\"");
+    refused({f, "--state", "A:colour=0.1"}, "nothing is called \"colour\"");
+    refused({f, "--state", "workobject_mm=2", "--state", "A:shear=x"}, "NAME=VALUE");
+    refused({f, "--state", "workobject_mm=2", "--region", "nope"}, "no region \"nope\"");
+    refused({f, "--state", "workobject_mm=2", "--out", (folder / "none" / "b.html").string()}, "b.html", 3);
+    const auto read = ProjectFile::open(file, FileAccess::read_only);
+    ASSERT_TRUE(read);
+    EXPECT_TRUE(read->load()->part.workobject_covariance.isZero(0));
+}
+
 TEST_F(BudgetCommand, MonteCarloIsRepeatableAndBesideTheFirstOrder) {
     const std::vector<std::string> arguments{"--displacement", kMoved,  "--region", "inner", "--monte-carlo",
                                              "--most-trials",  "20000", "--seed",   "7"};

@@ -117,7 +117,6 @@ Expected<Answer> budget_command(const BudgetArguments& given) {
              ProjectFile::open(a.file, a.state.empty() ? FileAccess::read_only : FileAccess::read_write));
     SEAM_TRY(auto project, file.load());
     for (const std::string& entry : a.state) SEAM_OK(state(project, entry));
-    if (!a.state.empty()) SEAM_OK(file.save(project));
     SEAM_TRY(auto budgets, budgets_of(a, project));
     BudgetPageOptions page;
     page.file = std::filesystem::path(a.file).filename().string();
@@ -135,11 +134,13 @@ Expected<Answer> budget_command(const BudgetArguments& given) {
     answer.json = {
         {"status", status}, {"required_sigma3_mm", project.requirements.sigma3_mm}, {"regions", regions}};
     answer.exit_code = determined && holds ? kExitOk : kExitVerdict;
-    if (a.out.empty()) return answer;
-    page.language = *language_from(a.language);
-    SEAM_OK(write_text_file(a.out, budget_page(budgets, page).html()));
-    answer.json["html"] = a.out;
-    answer.text += a.out + " written\n";
+    if (!a.out.empty()) {
+        page.language = *language_from(a.language);
+        SEAM_OK(write_text_file(a.out, budget_page(budgets, page).html()));
+        answer.json["html"] = a.out;
+        answer.text += a.out + " written\n";
+    }
+    if (!a.state.empty()) SEAM_OK(file.save(project));  // last: what is refused above changes nothing
     return answer;
 }
 

@@ -26,7 +26,7 @@
 //
 // Who: a file may have users (users.h). Then what writes to it asks may() of the person who is signed in, here and nowhere
 // else, and refuses with a sentence (ErrorKind::usage). Everything that is written is an entry of the chain too
-// (chain.h); a file that was changed behind its back is read, but nobody works with it (ErrorKind::file).
+// (chain/chain.h); a file that was changed behind its back is read, but nobody works with it (ErrorKind::file).
 
 #include <filesystem>
 #include <memory>
@@ -36,7 +36,7 @@
 #include <vector>
 
 #include "core/text.h"
-#include "projects/file/chain.h"
+#include "projects/file/chain/chain.h"
 #include "projects/file/run_values.h"
 #include "projects/model/evidence.h"
 #include "projects/model/project.h"
@@ -91,7 +91,7 @@ class RunSetup {
 struct StoredMeasurements {
     std::size_t captures = 0;
     std::set<std::size_t> spots;  // positions in RunRecord::spots
-    // Of the rows that hold the captures, see chain.h.
+    // Of the rows that hold the captures, see chain/chain.h.
     std::vector<Digest> capture_rows = {}, image_rows = {};
 };
 

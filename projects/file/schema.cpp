@@ -6,7 +6,7 @@
 #include <map>
 #include <mutex>
 
-#include "projects/file/chain.h"
+#include "projects/file/chain/chain.h"
 #include "projects/file/row_checksum.h"
 
 namespace seamwright {

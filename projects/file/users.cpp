@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "projects/file/chain.h"
+#include "projects/file/chain/chain.h"
 #include "projects/file/project_file_detail.h"
 #include "projects/file/row_checksum.h"
 

@@ -38,9 +38,9 @@ struct ReducedContour {
     void clear();
 };
 
-// The end of the upper surface at a jump (a step whose wall the sensor does not see): the last point plus
-// half a pitch along the surface, known to a pitch (variance pitch^2 / 12). From above, the upper end is seen
-// whatever the tilt; the lower one may lie in the upper one's shadow.
+// The end of the upper surface at a jump (a step whose wall the sensor does not see): the last point plus half of the way
+// to where the lower one begins (a pitch, or more where a point is missing or stood in the step), known to a pitch (variance
+// pitch^2 / 12). Seen from where z is larger, the upper end is seen whatever the tilt; the lower one may lie in its shadow.
 struct JumpEnd {
     double x, z;
     double tx, tz;        // unit, along the upper surface, outwards

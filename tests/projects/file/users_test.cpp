@@ -12,7 +12,7 @@
 
 #include "devices/capture/sqlite.h"
 #include "devices/exchange/files.h"
-#include "projects/file/audit.h"
+#include "projects/file/chain/audit.h"
 #include "projects/file/project_file.h"
 #include "projects/file/schema.h"
 #include "tests/projects/sample_project.h"
@@ -359,7 +359,8 @@ TEST(Chain, AnOlderCopyIsSeenByAnEarlierExport) {
     ASSERT_TRUE(file->append_event({0, {}, 0, EventKind::note, "R1", "a \"quoted\", word\nand a line"}));
     const auto now = audit_of(*file);
     ASSERT_TRUE(now);
-    const std::string csv = audit_csv(*now), json = audit_json(*now).dump(), head = now->lines.back().entry.hash;
+    const std::string csv = audit_csv(*now), json = audit_json(*now).dump(),
+                      head = now->lines.back().entry.hash;
     EXPECT_TRUE(audit_against(*now, csv, "x")->empty());
     ASSERT_TRUE(file->append_event({0, {}, 0, EventKind::note, "R1", "more"}));
     const auto later = audit_of(*file);

@@ -10,6 +10,7 @@
 namespace seamwright {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 Pose shift(double x, double y, double z, double turn_deg = 0) {
@@ -132,6 +133,28 @@ TEST(Path, PointsOfARegionMoveAsItsPushedFrameWould) {
     EXPECT_LT(a->corrected.largest_mm.mm, 0.3 * a->corrected.unblended_mm);
 }
 
+TEST(Path, RegionsThatShareAllTheirSpotsAreToldByTheNearestThatTheyDoNot) {
+    Setting s;
+    Region ends = s.project.regions[0];
+    ends.id = "ends";
+    ends.spot_ids = {"S1", "S3"};
+    s.project.regions.push_back(ends);
+    RegionRecord r = s.run.regions[0];
+    r.region_id = ends.id;
+    s.run.regions.push_back(r);
+    const auto a = s.answer();
+    ASSERT_TRUE(a) << a.error().sentence();
+    // Beside S1: left and ends share it; S2 is nearer than S3.
+    for (const std::size_t i : {5U, 30U, 49U}) EXPECT_EQ(a->path.points[i].region_id, "left") << i;
+    for (const std::size_t i : {51U, 70U, 95U}) EXPECT_EQ(a->path.points[i].region_id, "right") << i;
+    // In whatever order they stand in the project.
+    std::swap(s.project.regions[0], s.project.regions[2]);
+    const auto b = s.answer();
+    ASSERT_TRUE(b);
+    for (std::size_t i = 0; i < a->path.points.size(); ++i)
+        if (i != 50) EXPECT_EQ(a->path.points[i].region_id, b->path.points[i].region_id) << i;
+}
+
 TEST(Path, IsTheSameInBaseAndInTheWorkObject) {
     Setting s;
     const auto in_base = s.answer();
@@ -159,7 +182,9 @@ TEST(Path, NamedRegionsCountAndUnknownOnesAreRefused) {
     EXPECT_THAT(refused.error().sentence(), HasSubstr("path point 8"));
     s.path.regions_named = false;
     s.project.regions[1].spot_ids = {"S2"};
-    EXPECT_THAT(s.answer().error().sentence(), HasSubstr("add a column region"));
+    EXPECT_THAT(s.answer().error().sentence(),
+                AllOf(HasSubstr("all spots of region right belong to region left too"),
+                      HasSubstr("add a column region")));
 }
 
 TEST(Path, WhatTheGateRefusedIsRefused) {

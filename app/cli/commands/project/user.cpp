@@ -10,7 +10,7 @@
 #include "app/cli/command.h"
 #include "app/cli/sign_in.h"
 #include "devices/exchange/files.h"
-#include "projects/file/audit.h"
+#include "projects/file/chain/audit.h"
 #include "projects/file/project_file.h"
 
 namespace seamwright::cli {
@@ -206,7 +206,10 @@ void add_audit(CommandLine& line) {
         "seamwright audit door.seam --csv audit.csv --json audit.json\n"
         "  seamwright audit door.seam --since-export audit-may.json");
     command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
-    command->add_option("--csv", a->csv, "One line an entry, with what each event says; --json FILE is the same as JSON")->type_name("FILE.csv");
+    command
+        ->add_option("--csv", a->csv,
+                     "One line an entry, with what each event says; --json FILE is the same as JSON")
+        ->type_name("FILE.csv");
     command
         ->add_option("--since-export", a->since_export,
                      "An earlier export, CSV or JSON: its entries have to be in the file as they were")

@@ -36,7 +36,7 @@
 #include <vector>
 
 #include "devices/capture/sqlite.h"
-#include "projects/file/sha256.h"
+#include "projects/file/chain/sha256.h"
 
 namespace seamwright {
 

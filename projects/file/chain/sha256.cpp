@@ -1,4 +1,4 @@
-#include "projects/file/sha256.h"
+#include "projects/file/chain/sha256.h"
 
 #include <fmt/format.h>
 #include <sodium.h>

@@ -1,4 +1,4 @@
-#include "projects/file/chain.h"
+#include "projects/file/chain/chain.h"
 
 #include <fmt/format.h>
 #include <sodium.h>

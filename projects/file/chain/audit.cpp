@@ -1,4 +1,4 @@
-#include "projects/file/audit.h"
+#include "projects/file/chain/audit.h"
 
 #include <fmt/format.h>
 

@@ -225,6 +225,14 @@ SceneLabels SceneView::Impl::words() const {
                 words.labels.push_back(
                     {{at.x(), at.y()}, SceneView::tr("next pose"), style::selection(palette), true});
         }
+        if (const auto worst = worst_of(path); worst && shown.at(Layer::path)) {
+            const Eigen::Vector3d at = canvas->project(drawn_path(path, scale)[worst->point]);
+            QString text = SceneView::tr("moved %1 mm").arg(worst->shift_mm, 0, 'f', 2);
+            if (worst->sigma_mm > 0)
+                text += SceneView::tr(", 3 sigma %1 mm").arg(3 * worst->sigma_mm, 0, 'f', 3);
+            if (at.z() <= 1)
+                words.labels.push_back({{at.x(), at.y()}, text, style::attention(palette), true});
+        }
         if (shown.at(Layer::regions))
             for (const SceneRegion& one : regions) {
                 const auto weak = weak_arrow(one, spots);
@@ -374,6 +382,7 @@ void SceneView::set_regions(const std::vector<SceneRegion>& regions) {
 }
 
 void SceneView::set_path(const ScenePath& path) {
+    if (impl_->path == path) return;
     impl_->path = path;
     impl_->redraw(Layer::path);
 }

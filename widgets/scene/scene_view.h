@@ -42,9 +42,13 @@ struct SceneRegion {
     std::string weak_text;  // "weakest: along X, 0.4 mm"
 };
 
+// Coloured by how far each point moves, from the least (sky blue) to the most (vermilion) of this path; the numbers stand at
+// its worst point. Around it a tube of 3 sigma, as exaggerated as the shift.
 struct ScenePath {
     std::vector<Eigen::Vector3d> before_mm, after_mm;  // as taught; as corrected
     bool closed = false;
+    std::vector<double> sigma_mm = {};  // of the corrected points; empty: no tube
+    bool operator==(const ScenePath&) const = default;
 };
 
 struct SceneRobot {

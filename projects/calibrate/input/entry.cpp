@@ -26,4 +26,14 @@ Expected<std::pair<int, int>> image_size_of(const json& data, const std::string&
     return std::pair(static_cast<int>(size[0]), static_cast<int>(size[1]));
 }
 
+Expected<RobotRepeatability> repeatability_of(const json& data) {
+    const auto robot = data.find("robot");
+    if (robot == data.end() || robot->is_null()) return RobotRepeatability{};
+    SEAM_TRY(const double mm, json_number(*robot, "sigma_mm", "robot"));
+    SEAM_TRY(const double deg, json_number_or(*robot, "sigma_deg", 0.0, "robot"));
+    const RobotRepeatability stated{mm, rad_from_deg(deg)};
+    SEAM_OK(check_repeatability(stated));
+    return stated;
+}
+
 }  // namespace seamwright

@@ -23,6 +23,7 @@ constexpr double kRobotStart = 0.1;
 constexpr double kPriorWeight = 0.1;
 constexpr double kPriorLog = 3;  // sigma of a variance's logarithm, before the pairs
 constexpr double kFewestFreedom = 3;
+constexpr double kLeastLeft = 0.02;  // of the isotropic variance, beside a stated robot
 
 // All in units of the isotropic scales.
 class PairNoise {
@@ -31,14 +32,13 @@ class PairNoise {
         : chain_(chain), robot_outside_(robot_outside), robot_(robot), scales_(scales) {
         const std::size_t kinds = chain.used_count() < kFewestForFive ? 2 : 5;
         variance_.assign(kinds, 1);
-        if (kinds == 5) variance_.back() = kRobotStart;
-        start_ = variance_;
     }
 
     Weighed run(Pose x, Pose y) {
         for (int round = 0; round < 3; ++round) {
             at_ = linearise_pairs(chain_, x, y, scales_);
             shape(x, y);
+            if (round == 0) begin();
             for (int step = 0; step < kSteps; ++step) {
                 weigh();
                 if (!next_variances()) break;
@@ -57,6 +57,20 @@ class PairNoise {
     }
 
   private:
+    // What the stated robot leaves of the isotropic variance for the others to begin with.
+    void begin() {
+        double mm = 0, rad = 0;
+        for (const Matrix6& k : known_) {
+            mm += k.topLeftCorner<3, 3>().trace() / 3 / static_cast<double>(known_.size());
+            rad += k.bottomRightCorner<3, 3>().trace() / 3 / static_cast<double>(known_.size());
+        }
+        const double left_mm = std::max(1 - mm, kLeastLeft), left_rad = std::max(1 - rad, kLeastLeft);
+        if (variance_.size() == 2)
+            start_ = {left_mm, left_rad};
+        else
+            start_ = {left_mm, left_mm, left_rad, left_rad, kRobotStart * std::min(left_mm, left_rad)};
+        variance_ = start_;
+    }
     std::size_t count() const { return chain_.used_count(); }
     Rows jacobian(std::size_t i) const {
         return at_.jacobian.middleRows<6>(static_cast<Eigen::Index>(6 * i));

@@ -1,5 +1,6 @@
 #include "projects/calibrate/input/entry.h"
 
+#include "core/geometry/pose.h"
 #include "devices/exchange/json_fields.h"
 
 namespace seamwright {

@@ -4706,6 +4706,14 @@ A %5  B %6  C %7 Grad</translation>
 <context>
     <name>seamwright::RegionsPage</name>
     <message>
+        <source>Encircle spots</source>
+        <translation>Messstellen umfahren</translation>
+    </message>
+    <message>
+        <source>Draw a line around spots in the 3D view: they become the chosen region&apos;s, or a region of their own where none is chosen. The right mouse button does the same at any time.</source>
+        <translation>Im 3D-Bild eine Linie um Messstellen ziehen: sie werden die der gewählten Region oder, wo keine gewählt ist, eine eigene Region. Die rechte Maustaste tut jederzeit dasselbe.</translation>
+    </message>
+    <message>
         <source>A region is what moves as one piece: its spots tell where it has gone, its frame is what the robot gets.</source>
         <translation>Ein Korrekturbereich ist, was sich als ein Stück bewegt: seine Messstellen sagen, wohin; seinen Frame bekommt der Roboter.</translation>
     </message>
@@ -5316,8 +5324,8 @@ ausgelassen</translation>
         <translation>Teil in 3D</translation>
     </message>
     <message>
-        <source>Drag turns, Shift and drag moves, wheel zooms, a click selects. 1 front, 2 top, 3 iso, F fit.</source>
-        <translation>Ziehen dreht, Umschalt und Ziehen verschiebt, Rad zoomt, ein Klick wählt. 1 vorn, 2 oben, 3 iso, F einpassen.</translation>
+        <source>Drag turns, Shift and drag moves, wheel zooms, a click selects, a drag with the right button encircles spots. 1 front, 2 top, 3 iso, F fit.</source>
+        <translation>Ziehen dreht, Umschalt und Ziehen verschiebt, Rad zoomt, ein Klick wählt, Ziehen mit der rechten Taste umfährt Messstellen. 1 vorn, 2 oben, 3 iso, F einpassen.</translation>
     </message>
     <message>
         <source>Part</source>

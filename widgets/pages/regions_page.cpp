@@ -40,16 +40,21 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
                           [this] {
                               if (region()) done(desk_.remove<Region>(region()->id));
                           });
-    box().addLayout(make_row({make_button("add_region", "add", tr("Add region"), tr("A further region"),
-                                          [this] {
-                                              Region r;
-                                              r.id = desk_.free_id<Region>("Region");
-                                              r.frame_name = "BASE_" + r.id;
-                                              r.base_from_frame = desk_.project().part.base_from_workobject;
-                                              const std::string id = r.id;
-                                              if (done(desk_.add(r))) desk_.selection().select_region(id);
-                                          }),
-                              rename_, remove_}));
+    box().addLayout(make_row(
+        {make_button("add_region", "add", tr("Add region"), tr("A further region"),
+                     [this] { add_region({}); }),
+         make_button(
+             "encircle", "pick", tr("Encircle spots"),
+             tr("Draw a line around spots in the 3D view: they become the chosen region's, or a region of "
+                "their own where none is chosen. The right mouse button does the same at any time."),
+             [this] {
+                 views_.raise(views_.scene);
+                 views_.scene->begin_lasso();
+             }),
+         rename_, remove_}));
+    connect(views.scene, &SceneView::spots_encircled, this, [this](const QStringList& ids) {
+        if (isVisible()) take_encircled(ids);
+    });
     add_list_deed(*list_, *rename_, Qt::Key_F2);
     add_list_deed(*list_, *remove_, QKeySequence::Delete);
     inspector_ = new QWidget;
@@ -160,6 +165,26 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
                           });
     in->addLayout(make_row({proven_}));
     box().addStretch(1);
+}
+
+void RegionsPage::add_region(std::vector<std::string> spot_ids) {
+    Region r;
+    r.id = desk_.free_id<Region>("Region");
+    r.frame_name = "BASE_" + r.id;
+    r.base_from_frame = desk_.project().part.base_from_workobject;
+    r.spot_ids = std::move(spot_ids);
+    const std::string id = r.id;
+    if (done(desk_.add(r))) desk_.selection().select_region(id);
+}
+
+void RegionsPage::take_encircled(const QStringList& ids) {
+    if (ids.isEmpty()) return;
+    std::vector<std::string> spots;
+    for (const QString& id : ids) spots.push_back(id.toStdString());
+    if (!region()) return add_region(std::move(spots));
+    Region r = *region();
+    r.spot_ids = std::move(spots);
+    done(desk_.edit(r, tr("spots")));
 }
 
 void RegionsPage::entered() {

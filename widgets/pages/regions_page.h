@@ -25,6 +25,8 @@ class RegionsPage : public StepPage {
   private:
     const Region* region() const;
     void show_plan(const Region& region);
+    void add_region(std::vector<std::string> spot_ids);
+    void take_encircled(const QStringList& ids);
     QListWidget *list_, *spots_;
     QPushButton *proven_ = nullptr, *rename_, *remove_;
     QWidget* inspector_;

@@ -258,7 +258,9 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
     setObjectName("scene_view");
     setAccessibleName(tr("Part in 3D"));
     setToolTip(
-        tr("Drag turns, Shift and drag moves, wheel zooms, a click selects. 1 front, 2 top, 3 iso, F fit."));
+        tr("Drag turns, Shift and drag moves, wheel zooms, a click selects, a drag with the right button "
+           "encircles "
+           "spots. 1 front, 2 top, 3 iso, F fit."));
     // Before the buttons: Tab goes from the view to the canvas that has its focus, and on from there.
     if (opengl_available()) impl_->canvas = new SceneCanvas(this);
     auto* bar = new ViewBar(this, tr("Part"));
@@ -316,6 +318,18 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
             const std::string id = nearest ? nearest->id : std::string();
             if (id != impl_->spot) select_spot(id);
             emit spot_picked(QString::fromStdString(id));
+        };
+        impl_->canvas->on_encircled = [this](const QPolygonF& line) {
+            impl_->canvas->lasso = false;
+            impl_->canvas->unsetCursor();
+            QStringList ids;
+            for (const SceneSpot& spot : impl_->spots) {
+                const Eigen::Vector3d p =
+                    impl_->canvas->project(spot.workobject_from_sensor * spot.reference_mm);
+                if (p.z() <= 1 && line.containsPoint({p.x(), p.y()}, Qt::OddEvenFill))
+                    ids << QString::fromStdString(spot.id);
+            }
+            emit spots_encircled(ids);
         };
         show_view(View::iso);
     } else {
@@ -422,6 +436,12 @@ void SceneView::select_region(const std::string& id) {
 
 std::string SceneView::selected_spot() const {
     return impl_->spot;
+}
+
+void SceneView::begin_lasso() {
+    if (!impl_->canvas) return;
+    impl_->canvas->lasso = true;
+    impl_->canvas->setCursor(Qt::CrossCursor);
 }
 
 void SceneView::show_view(View view) {

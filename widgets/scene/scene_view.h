@@ -3,7 +3,7 @@
 //
 // Frame: work object, millimetres. All poses are workobject_from_... Managers (scene_managers.h) alone touch
 // actors; the view hands them values. Render requests are coalesced: at most 60 pictures a second, none when
-// nothing changed. Mouse: left drag turns, middle or Shift+left moves, wheel zooms, a click picks. Keys: 1
+// nothing changed. Mouse: left drag turns, middle or Shift+left moves, wheel zooms, a click picks, right drag encircles. Keys: 1
 // front, 2 top, 3 iso, F fit, Escape selects nothing. Without OpenGL 3.2 (remote desktop, broken driver) a
 // sentence takes the picture's place and everything else works.
 
@@ -91,6 +91,8 @@ class SceneView : public QWidget {
     void select_region(const std::string& id);
     std::string selected_spot() const;
 
+    // The next drag draws a line around spots instead of turning the part; the right button does so always.
+    void begin_lasso();
     void show_view(View view);
     void set_layer(Layer layer, bool shown);
     bool layer(Layer layer) const;
@@ -107,6 +109,7 @@ class SceneView : public QWidget {
   signals:
     void spot_picked(QString id);                    // "" = nothing there
     void part_picked(double x, double y, double z);  // work object, mm
+    void spots_encircled(QStringList ids);           // in the order of measuring; may be none
 
   protected:
     void changeEvent(QEvent* event) override;

@@ -4706,6 +4706,38 @@ A %5  B %6  C %7 Grad</translation>
 <context>
     <name>seamwright::RegionsPage</name>
     <message>
+        <source>Pick 3-2-1 on the part</source>
+        <translation>3-2-1 am Teil anklicken</translation>
+    </message>
+    <message>
+        <source>Six clicks on the part in 3D: three on a plane, two along X, one for the origin; the frame goes there</source>
+        <translation>Sechs Klicks auf das Teil in 3D: drei auf einer Ebene, zwei entlang X, einer für den Ursprung; das Koordinatensystem kommt dorthin</translation>
+    </message>
+    <message>
+        <source>There is no part to click on: step 1, Cell, imports its mesh.</source>
+        <translation>Es gibt kein Teil zum Anklicken: Schritt 1, Zelle, importiert sein Netz.</translation>
+    </message>
+    <message>
+        <source>click point %1 of 3 of the plane, counter-clockwise seen from above</source>
+        <translation>Punkt %1 von 3 der Ebene anklicken, von oben gesehen gegen den Uhrzeigersinn</translation>
+    </message>
+    <message>
+        <source>click point %1 of 2 along X</source>
+        <translation>Punkt %1 von 2 entlang X anklicken</translation>
+    </message>
+    <message>
+        <source>click the point beside which the origin lies</source>
+        <translation>den Punkt anklicken, neben dem der Ursprung liegt</translation>
+    </message>
+    <message>
+        <source>Frame by 3-2-1: %1.</source>
+        <translation>Koordinatensystem nach 3-2-1: %1.</translation>
+    </message>
+    <message>
+        <source>The frame stands where it was picked; undo brings the old one back.</source>
+        <translation>Das Koordinatensystem steht, wo geklickt wurde; Rückgängig bringt das alte wieder.</translation>
+    </message>
+    <message>
         <source>Encircle spots</source>
         <translation>Messstellen umfahren</translation>
     </message>

@@ -112,6 +112,7 @@ struct SceneView::Impl {
     std::vector<SceneSpot> spots;
     std::vector<SceneRegion> regions;
     ScenePath path;
+    std::vector<Eigen::Vector3d> picks;
     std::optional<SceneRobot> robot, next_robot;
     Pose part_shift = Pose::Identity();
     std::string spot, region;
@@ -224,6 +225,12 @@ SceneLabels SceneView::Impl::words() const {
             if (at.z() <= 1)
                 words.labels.push_back(
                     {{at.x(), at.y()}, SceneView::tr("next pose"), style::selection(palette), true});
+        }
+        for (std::size_t i = 0; i < picks.size(); ++i) {
+            const Eigen::Vector3d at = canvas->project(picks[i]);
+            if (at.z() <= 1)
+                words.labels.push_back(
+                    {{at.x(), at.y()}, QString::number(i + 1), style::selection(palette), true});
         }
         if (const auto worst = worst_of(path); worst && shown.at(Layer::path)) {
             const Eigen::Vector3d at = canvas->project(drawn_path(path, scale)[worst->point]);
@@ -413,6 +420,11 @@ void SceneView::set_next_robot(const std::optional<SceneRobot>& next) {
     impl_->redraw(Layer::robot);
     if (goes) show_view(View::fit);
     if (appears && impl_->canvas) impl_->canvas->fit(impl_->manager(Layer::robot)->actor());
+}
+
+void SceneView::set_picks(const std::vector<Eigen::Vector3d>& picks_mm) {
+    impl_->picks = picks_mm;
+    impl_->changed();
 }
 
 void SceneView::set_correction_scale(double factor) {

@@ -84,6 +84,8 @@ class SceneView : public QWidget {
     // Where the robot is to go next, half transparent beside where it stands; belongs to the robot's layer.
     // When one appears, the picture is fitted to both; when it goes, to the part again.
     void set_next_robot(const std::optional<SceneRobot>& next);
+    // Places of the part that were picked so far, numbered from 1.
+    void set_picks(const std::vector<Eigen::Vector3d>& picks_mm);
     void set_correction_scale(double factor);  // drawn length / true length, 1..1000; default 20
 
     // From outside; "" selects nothing. No signal is sent for it.

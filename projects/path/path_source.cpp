@@ -4,8 +4,6 @@ namespace seamwright {
 namespace {
 
 Expected<PathSource> from_drawing(const PathOrigin& o) {
-    if (o.drawing.empty() || o.edge.empty())
-        return usage_error("a path from the drawing wants --drawing and --edge", "", "or give --path");
     SEAM_TRY(const auto drawing, read_drawing(o.drawing, o.drawing_options));
     SEAM_TRY(const auto edge, edge_path(drawing, o.edge, o.edge_options));
     PathSource source;
@@ -16,9 +14,6 @@ Expected<PathSource> from_drawing(const PathOrigin& o) {
 }
 
 Expected<PathSource> from_table(const PathOrigin& o) {
-    if (o.brand.empty())
-        return usage_error("a table does not say in whose notation it is", o.file.string(),
-                           "say --brand kuka, abb or ur");
     SEAM_TRY(const auto notation, path_notation_from(o.brand));
     PathSource source;
     SEAM_TRY(source.path, read_path_csv(o.file, notation));
@@ -30,8 +25,6 @@ Expected<PathSource> from_table(const PathOrigin& o) {
 }  // namespace
 
 Expected<PathSource> read_path_source(const PathOrigin& o) {
-    if (!o.file.empty() && !o.edge.empty())
-        return usage_error("a path comes from --path or from --edge, not from both");
     if (o.file.empty()) return from_drawing(o);
     if (!program_language_of(o.file)) return from_table(o);
     PathSource source;

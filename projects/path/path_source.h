@@ -32,7 +32,7 @@ struct PathSource {
     std::optional<ProgramPath> program;
 };
 
-// Error: what the readers refuse; (usage) neither file nor edge, both, a table whose notation is not said.
+// Error: what the readers refuse.
 Expected<PathSource> read_path_source(const PathOrigin& origin);
 
 }  // namespace seamwright

@@ -14,7 +14,7 @@
 namespace seamwright {
 namespace {
 
-constexpr int kWidth = 560;
+constexpr int kPathDialogWidth = 560;
 constexpr double kFastest_mm_s = 2000;
 
 ScenePath scene_path(const CorrectedByRun& corrected) {
@@ -34,7 +34,7 @@ PathDialog::PathDialog(Desk& desk, SceneView& scene, QWidget* parent)
     : QDialog(parent), desk_(desk), scene_(scene) {
     setObjectName("path_dialog");
     setWindowTitle(tr("Path corrected by a run"));
-    setMinimumWidth(kWidth);
+    setMinimumWidth(kPathDialogWidth);
     auto* box = new QVBoxLayout(this);
     const auto combo = [&](const char* name, const QStringList& words, const QString& label,
                            const QString& tip) {

@@ -47,7 +47,7 @@ class PathDialog : public QDialog {
     QLineEdit* name_;
     QPushButton* write_;
     std::optional<CorrectedByRun> corrected_;
-    bool filling_ = false;
+    bool filling_ = true;  // until the first answer can be shown
 };
 
 }  // namespace seamwright

@@ -14,7 +14,7 @@
 namespace seamwright {
 namespace {
 
-constexpr int kWidth = 520;
+constexpr int kProgramDialogWidth = 520;
 
 Expected<ProgramRequest> request_of(const Project& project, const QComboBox& robot, const QComboBox& type) {
     return program_request(project, RobotId(robot.currentText().toStdString()),
@@ -26,7 +26,7 @@ Expected<ProgramRequest> request_of(const Project& project, const QComboBox& rob
 ProgramDialog::ProgramDialog(Desk& desk, QWidget* parent) : QDialog(parent), desk_(desk) {
     setObjectName("program_dialog");
     setWindowTitle(tr("Program for the robot's controller"));
-    setMinimumWidth(kWidth);
+    setMinimumWidth(kProgramDialogWidth);
     auto* box = new QVBoxLayout(this);
     box->addWidget(
         make_text(tr("The module that talks to Seamwright, the measuring program with entry, trigger and "

@@ -159,6 +159,13 @@ void add_path_source_options(CLI::App& command, PathSourceArguments& a) {
 }
 
 Expected<PathOrigin> path_origin(const PathSourceArguments& a) {
+    if (!a.path.empty() && !a.edge.empty())
+        return usage_error("a path comes from --path or from --edge, not from both");
+    if (a.path.empty() && (a.drawing.empty() || a.edge.empty()))
+        return usage_error("a path from the drawing wants --drawing and --edge", "", "or give --path");
+    if (!a.path.empty() && !program_language_of(a.path) && a.brand.empty())
+        return usage_error("a table does not say in whose notation it is", a.path,
+                           "say --brand kuka, abb or ur");
     PathOrigin origin;
     origin.file = a.path;
     origin.brand = a.brand;

@@ -23,7 +23,8 @@ struct PathSourceArguments {
 };
 
 void add_path_source_options(CLI::App& command, PathSourceArguments& arguments);
-// Error (usage): lines that are no range, frames without a name or a pose.
+// Error (usage): neither path nor edge, both, a table without its notation, lines that are no range, frames without a name
+// or a pose.
 Expected<PathOrigin> path_origin(const PathSourceArguments& arguments);
 
 // What --look shows: every point, and every line with what became of it. It does not fail for lines that are not understood.

@@ -88,7 +88,7 @@ TEST_F(Dialogs, APathIsCorrectedByARunShownAndWritten) {
 
     // The run is in the list, and the path moves as the door does.
     const auto* runs = dialog->findChild<QComboBox*>("path_run");
-    ASSERT_EQ(runs->count(), 1);
+    ASSERT_TRUE(me.wait([&] { return runs->count() == 1; }));
     EXPECT_TRUE(write->isEnabled()) << word(*dialog, "path_verdict").toStdString();
     EXPECT_TRUE(word(*dialog, "path_verdict").contains("moved by up to"))
         << word(*dialog, "path_verdict").toStdString();

@@ -75,6 +75,7 @@ void add_collision(CommandLine& line);
 void add_hand_over(CommandLine& line);  // report, reteach
 void add_acceptance(CommandLine& line);
 void add_statistics(CommandLine& line);
+void add_fleet(CommandLine& line);
 void add_modes(CommandLine& line);
 void add_drift(CommandLine& line);
 void add_device_studies(CommandLine& line);  // measure-robot, measure-trigger

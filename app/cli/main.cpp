@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
     add_hand_over(line);
     add_acceptance(line);
     add_statistics(line);
+    add_fleet(line);
     add_diagnose(line);
     add_modes(line);
     add_drift(line);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/cli/command.h"
+#include "app/cli/commands/production/fleet.h"
 #include "devices/exchange/files.h"
 #include "projects/file/project_file.h"
 
@@ -11,7 +12,7 @@ namespace {
 
 struct ServiceArguments {
     std::string file, out, user, identity, password_file, status, status_token, report_every, report_from,
-        report_to;
+        report_to, fleet, station;
     bool push = false;
     std::int64_t keep = 0;
 };
@@ -47,6 +48,8 @@ Expected<std::string> unit_text(const ServiceArguments& a, const std::filesystem
     add("--status-token", a.status_token.empty() ? "" : absolute(a.status_token));
     add("--report-every", a.report_every);
     add("--report-from", a.report_from);
+    add("--fleet", a.fleet);
+    add("--station", a.station);
     add("--to", a.report_to.empty() ? "" : absolute(a.report_to));
     std::string line;
     for (const std::string& word : words) {
@@ -143,6 +146,11 @@ void add_service(CommandLine& line) {
         command->add_option("--report-every", a->report_every, "As of run: a report of every 8h")->needs(to);
     to->needs(every);
     command->add_option("--report-from", a->report_from, "As of run: when a shift begins")->needs(every);
+    auto* fleet = add_fleet_option(command, "--fleet", a->fleet,
+                                   "As of run: the fleet's database, without its password");
+    command->add_option("--station", a->station, "As of run: the station's name")
+        ->needs(fleet)
+        ->type_name("NAME");
     line.on(command, [a] { return service_command(*a); });
 }
 

@@ -68,6 +68,24 @@ constexpr auto kWords = std::to_array<Word>({
     {"region_height", QT_TRANSLATE_NOOP("Words", "Image region, height")},
     {"pixel_format", QT_TRANSLATE_NOOP("Words", "Pixel format")},
     {"trigger", QT_TRANSLATE_NOOP("Words", "Trigger")},
+    // of a sensor's peaks and its stripe model
+    {"scan", QT_TRANSLATE_NOOP("Words", "Cut along")},
+    {"peak_method", QT_TRANSLATE_NOOP("Words", "Middle of the stripe by")},
+    {"per_line", QT_TRANSLATE_NOOP("Words", "Peaks a line")},
+    {"peak_threshold", QT_TRANSLATE_NOOP("Words", "Least height of a peak")},
+    {"min_width_px", QT_TRANSLATE_NOOP("Words", "Least width of a peak")},
+    {"max_width_px", QT_TRANSLATE_NOOP("Words", "Largest width of a peak")},
+    {"steger_sigma_px", QT_TRANSLATE_NOOP("Words", "Smoothing (Steger)")},
+    {"noise_mm", QT_TRANSLATE_NOOP("Words", "Noise of a point")},
+    {"band_sigmas", QT_TRANSLATE_NOOP("Words", "Acceptance band, sigmas")},
+    {"lookahead", QT_TRANSLATE_NOOP("Words", "Longest burst of outliers")},
+    {"average", QT_TRANSLATE_NOOP("Words", "Weight of the newest point")},
+    {"initial_sigma", QT_TRANSLATE_NOOP("Words", "First sigma of the spacing")},
+    {"min_segment_points", QT_TRANSLATE_NOOP("Words", "Shortest segment, points")},
+    {"as_delivered", QT_TRANSLATE_NOOP("Words", "As the sensor delivers it")},
+    {"centre_of_gravity", QT_TRANSLATE_NOOP("Words", "centre of gravity")},
+    {"gaussian", QT_TRANSLATE_NOOP("Words", "Gaussian curve")},
+    {"steger", QT_TRANSLATE_NOOP("Words", "ridge (Steger)")},
     // units that are words
     {"deg", QT_TRANSLATE_NOOP("Words", "deg")},
     {"us", QT_TRANSLATE_NOOP("Words", "us")},
@@ -342,12 +360,11 @@ struct Unit {
     std::string_view ending, shown;
 };
 // The longest ending that fits counts.
-constexpr std::array kUnits{Unit{"_mm_s2", "mm/s²"}, Unit{"_deg_s2", "°/s²"}, Unit{"_mm_s", "mm/s"},
-                            Unit{"_deg_s", "°/s"},   Unit{"_ms", "ms"},       Unit{"_us", "µs"},
-                            Unit{"_ns", "ns"},       Unit{"_s", "s"},         Unit{"_mm", "mm"},
-                            Unit{"_deg", "°"},       Unit{"_hz", "Hz"},       Unit{"_khz", "kHz"},
-                            Unit{"_px", "px"},       Unit{"_kg", "kg"},       Unit{"_per_mille", "‰"},
-                            Unit{"_db", "dB"}};
+constexpr std::array kUnits{
+    Unit{"_mm_s2", "mm/s²"}, Unit{"_deg_s2", "°/s²"}, Unit{"_mm_s", "mm/s"},   Unit{"_deg_s", "°/s"},
+    Unit{"_ms", "ms"},       Unit{"_us", "µs"},       Unit{"_ns", "ns"},       Unit{"_s", "s"},
+    Unit{"_mm", "mm"},       Unit{"_deg", "°"},       Unit{"_hz", "Hz"},       Unit{"_khz", "kHz"},
+    Unit{"_px", "px"},       Unit{"_kg", "kg"},       Unit{"_per_mille", "‰"}, Unit{"_db", "dB"}};
 
 const Word* find(std::string_view identifier) {
     const auto at =
@@ -369,10 +386,10 @@ QString shown_word(std::string_view identifier) {
 ShownSetting shown_setting(std::string_view identifier) {
     for (const Unit& u : kUnits)
         if (identifier.size() > u.ending.size() && identifier.ends_with(u.ending))
-            return {shown_word(has_word(identifier)
-                                   ? identifier
-                                   : identifier.substr(0, identifier.size() - u.ending.size())),
-                    QString::fromUtf8(u.shown.data(), static_cast<qsizetype>(u.shown.size()))};
+            return {
+                shown_word(has_word(identifier) ? identifier
+                                                : identifier.substr(0, identifier.size() - u.ending.size())),
+                QString::fromUtf8(u.shown.data(), static_cast<qsizetype>(u.shown.size()))};
     return {shown_word(identifier), {}};
 }
 

@@ -47,11 +47,13 @@ void add_plan(CommandLine& line);
 void add_panel(CommandLine& line);
 void add_path(CommandLine& line);
 void add_gap(CommandLine& line);
+void add_double_head(CommandLine& line);
 void add_evaluate(CommandLine& line);
 void add_filter(CommandLine& line);
 void add_feature(CommandLine& line);
 void add_match(CommandLine& line);
 void add_extract(CommandLine& line);
+void add_track(CommandLine& line);
 void add_resolution(CommandLine& line);
 void add_align(CommandLine& line);
 void add_calibrate(CommandLine& line);
@@ -69,9 +71,14 @@ void add_run(CommandLine& line);
 void add_service(CommandLine& line);
 void add_record(CommandLine& line);
 void add_expose(CommandLine& line);
+void add_teach(CommandLine& line);
+void add_pass(CommandLine& line);
+void add_stripe(CommandLine& line);
 void add_proof(CommandLine& line);  // zero-shift, known-shift
 void add_budget(CommandLine& line);
 void add_collision(CommandLine& line);
+void add_use(CommandLine& line);
+void add_plate_pose(CommandLine& line);
 void add_hand_over(CommandLine& line);  // report, reteach
 void add_acceptance(CommandLine& line);
 void add_statistics(CommandLine& line);

@@ -124,6 +124,82 @@ const std::vector<Field<PanelJob>>& panel_fields() {
     return fields;
 }
 
+namespace {
+template <class E>
+E choice(double v) {
+    return static_cast<E>(static_cast<int>(v + 0.5));
+}
+int whole(double v) {
+    return static_cast<int>(v + 0.5);
+}
+}  // namespace
+
+const std::vector<Field<SensorSetup>>& sensor_fields() {
+    using S = SensorSetup;
+    static const std::vector<Field<S>> fields = {
+        {{"scan", "", 0, 1, 0, 0, "Image lines that the stripe is cut along.", {"columns", "rows"}},
+         [](const S& s) { return static_cast<double>(s.peaks.scan); },
+         [](S& s, double v) { s.peaks.scan = choice<ScanLines>(v); }},
+        {{"peak_method",
+          "",
+          0,
+          2,
+          0,
+          0,
+          "How the middle of the stripe is found; gaussian for overexposed stripes.",
+          {"centre_of_gravity", "gaussian", "steger"}},
+         [](const S& s) { return static_cast<double>(s.peaks.method); },
+         [](S& s, double v) { s.peaks.method = choice<PeakMethod>(v); }},
+        {{"per_line", "", 1, 64, 3, 0,
+          "Peaks of a line that the stripe is chosen from: itself and reflections."},
+         [](const S& s) { return static_cast<double>(s.peaks.per_line); },
+         [](S& s, double v) { s.peaks.per_line = whole(v); }},
+        {{"peak_threshold", "", 0, 65535, 0, 0,
+          "Grey values above the background that a peak needs; 0: by itself."},
+         [](const S& s) { return s.peaks.threshold; },
+         [](S& s, double v) { s.peaks.threshold = v; }},
+        {{"min_width_px", "px", 0, 1000, 1, 1, "Narrower peaks are none, full width at half height."},
+         [](const S& s) { return s.peaks.min_width_px; },
+         [](S& s, double v) { s.peaks.min_width_px = v; }},
+        {{"max_width_px", "px", 0.1, 10000, 80, 1, "Wider peaks are none, full width at half height."},
+         [](const S& s) { return s.peaks.max_width_px; },
+         [](S& s, double v) { s.peaks.max_width_px = v; }},
+        {{"steger_sigma_px", "px", 0.5, 20, 2, 1, "Smoothing of the line, method steger."},
+         [](const S& s) { return s.peaks.steger_sigma_px; },
+         [](S& s, double v) { s.peaks.steger_sigma_px = v; }},
+        {{"noise_mm", "mm", 0, 10, 0, 4, "Standard deviation of a point; 0: estimated from each profile."},
+         [](const S& s) { return s.filter.noise_mm; },
+         [](S& s, double v) { s.filter.noise_mm = v; }},
+        {{"band_sigmas", "", 1, 20, 4, 1, "Acceptance band in predicted standard deviations."},
+         [](const S& s) { return s.filter.band_sigmas; },
+         [](S& s, double v) { s.filter.band_sigmas = v; }},
+        {{"lookahead", "", 1, 50, 3, 0, "Longest burst of outliers, points."},
+         [](const S& s) { return static_cast<double>(s.filter.lookahead); },
+         [](S& s, double v) { s.filter.lookahead = whole(v); }},
+        {{"average", "", 0.001, 1, 0.15, 3,
+          "Weight of the newest point in the averages of drift and variance."},
+         [](const S& s) { return s.filter.average; },
+         [](S& s, double v) { s.filter.average = v; }},
+        {{"initial_sigma", "", 0.001, 2, 0.15, 3, "Sigma of the spacing's logarithm where a segment begins."},
+         [](const S& s) { return s.filter.initial_sigma; },
+         [](S& s, double v) { s.filter.initial_sigma = v; }},
+        {{"min_segment_points", "", 1, 10000, 4, 0, "Shorter pieces are outliers, points."},
+         [](const S& s) { return static_cast<double>(s.filter.min_segment_points); },
+         [](S& s, double v) { s.filter.min_segment_points = whole(v); }},
+        {{"as_delivered",
+          "",
+          0,
+          1,
+          0,
+          0,
+          "Finished profiles count as the sensor delivers them, without outliers and segments.",
+          {"no", "yes"}},
+         [](const S& s) { return s.filter.as_delivered ? 1.0 : 0.0; },
+         [](S& s, double v) { s.filter.as_delivered = v >= 0.5; }},
+    };
+    return fields;
+}
+
 const std::vector<Field<Requirements>>& requirement_fields() {
     static const std::vector<Field<Requirements>> fields = {
         {{"sigma3_mm", "mm", 0.001, 10, 0.3, 3,
@@ -197,6 +273,10 @@ Expected<void> set_field(PanelJob& job, std::string_view name, double value) {
     return set_in(panel_fields(), job, name, value, Text("panel job {}", job.id));
 }
 
+Expected<void> set_field(SensorSetup& sensor, std::string_view name, double value) {
+    return set_in(sensor_fields(), sensor, name, value, Text("sensor {}", sensor.id));
+}
+
 Expected<void> set_field(Requirements& requirements, std::string_view name, double value) {
     return set_in(requirement_fields(), requirements, name, value, "requirements");
 }
@@ -214,6 +294,21 @@ Expected<void> validate_fields(const Region& region) {
 
 Expected<void> validate_fields(const PanelJob& job) {
     return validate_in(panel_fields(), job, Text("panel job {}", job.id));
+}
+
+Expected<void> validate_fields(const SensorSetup& sensor) {
+    const Text where("sensor {}", sensor.id);
+    SEAM_OK(validate_in(sensor_fields(), sensor, where));
+    if (sensor.peaks.min_width_px > sensor.peaks.max_width_px)
+        return input_error(Text("peaks of {} px at least and {} px at most", sensor.peaks.min_width_px,
+                                sensor.peaks.max_width_px),
+                           where, "give a min_width_px below max_width_px");
+    // A burst of outliers would be a segment (filter.h).
+    if (sensor.filter.min_segment_points <= sensor.filter.lookahead)
+        return input_error(Text("segments of {} points and bursts of {} outliers",
+                                sensor.filter.min_segment_points, sensor.filter.lookahead),
+                           where, "give a min_segment_points above lookahead");
+    return {};
 }
 
 Expected<void> validate_fields(const Requirements& requirements) {

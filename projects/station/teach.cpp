@@ -157,6 +157,32 @@ Expected<TaughtSpot> taught_from(const Spot& draft, std::vector<SpotMeasurement>
     return taught;
 }
 
+Expected<Spot> with_taught(const Spot& is, const TaughtSpot& taught) {
+    if (!measured_alike(is, taught.spot))
+        return input_error("it was changed while its reference was measured", Text("spot {}", is.id),
+                           "measure the reference again");
+    Spot after = is;
+    after.reference_mm = taught.spot.reference_mm;
+    after.reference_profile = taught.spot.reference_profile;
+    after.reference_arrivals = taught.spot.reference_arrivals;
+    after.reference_light = taught.spot.reference_light;
+    after.reference_state = taught.spot.reference_state;
+    after.curve.reset();
+    return after;
+}
+
+Expected<Spot> with_template(const Spot& spot, const Profile& profile, const Eigen::AlignedBox2d& window) {
+    const Profile piece = cut_out(profile, window);
+    if (piece.size() < kTemplatePoints)
+        return input_error(Text("the window holds fewer than {} points of the contour", kTemplatePoints),
+                           Text("spot {}", spot.id), "drag a larger one");
+    Spot after = spot;
+    after.feature.template_profile = piece;
+    const std::size_t middle = piece.size() / 2;
+    after.feature.template_reference_mm = {piece.x_mm[middle], piece.z_mm[middle]};
+    return after;
+}
+
 bool measured_alike(const Spot& a, const Spot& b) {
     const auto same = [](const Profile& p, const Profile& q) { return p.x_mm == q.x_mm && p.z_mm == q.z_mm; };
     return a.sensor_id == b.sensor_id && a.robot_id == b.robot_id && a.feature.kind == b.feature.kind &&
@@ -205,6 +231,40 @@ Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const Pas
                 pass.references.push_back({travel[i], m.feature.point_mm.x(), m.feature.point_mm.y()});
         }));
     return pass;
+}
+
+AlignmentOptions alignment_options(const Spot& spot) {
+    AlignmentOptions options;
+    options.jitter_mm = spot.jitter_mm;
+    options.window_mm = std::max(spot.entry_mm, spot.exit_mm);
+    options.reference_mm = Eigen::Vector2d(spot.reference_mm.x(), spot.reference_mm.z());
+    return options;
+}
+
+Expected<JudgedPass> judge_pass(const Spot& spot, RecordedPass pass, const AlignmentOptions& options) {
+    if (pass.profiles.empty())
+        return input_error("no profile was seen on the whole pass", Text("spot {}", spot.id),
+                           "look at the live picture: light, stand-off, calibration");
+    SEAM_TRY(auto result, check_alignment(pass.profiles, options));
+    JudgedPass judged{spot, std::move(pass), options, std::move(result), std::nullopt};
+    if (auto curve = fit_contour_curve(judged.pass.references)) judged.curve = *curve;
+    return judged;
+}
+
+Expected<Spot> with_pass(const Spot& is, const JudgedPass& judged) {
+    const Text where("spot {}", is.id);
+    if (is.id != judged.spot.id || !measured_alike(is, judged.spot))
+        return input_error("it was changed since it was passed", where, "record the pass again");
+    if (judged.result.status != AlignmentStatus::frozen)
+        return input_error(Text("the contour does not stand still: {}", to_string(judged.result.status)),
+                           where, judged.result.cure);
+    if (!judged.curve)
+        return input_error("the feature was found in too few profiles to learn the contour's curve", where,
+                           "record the pass again, or choose another feature");
+    Spot after = is;
+    after.curve = judged.curve;
+    after.jitter_mm = judged.options.jitter_mm;
+    return after;
 }
 
 Spot cured(const Spot& spot, const AlignmentResult& result, const Pose& flange_from_sensor) {

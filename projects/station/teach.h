@@ -61,6 +61,18 @@ Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const Teach
 Expected<TaughtSpot> taught_from(const Spot& draft, std::vector<SpotMeasurement> measurements,
                                  std::span<const Profile> profiles, int arrivals);
 
+// `is`, the spot as the project has it by now, with what was measured of it: weights and limits may have been edited
+// meanwhile, and the curve of an earlier pass was about the old reference. Error (input): it was changed so that what was
+// measured does not hold for it.
+Expected<Spot> with_taught(const Spot& is, const TaughtSpot& taught);
+
+// Fewer points are no template.
+inline constexpr std::size_t kTemplatePoints = 20;
+// `spot`, of the kind template, with the piece of `profile` (filtered) inside the window, sensor frame (x, z), as its
+// template; until told otherwise its landmark is the contour's point in the middle of the piece. Error (input): fewer
+// than kTemplatePoints points are in the window.
+Expected<Spot> with_template(const Spot& spot, const Profile& profile, const Eigen::AlignedBox2d& window);
+
 // Whether what was measured with `a` holds for `b`: sensor, robot, feature, and the pose within a micrometre
 // and 0.0001 degree (what a pose loses on its way through a text).
 bool measured_alike(const Spot& a, const Spot& b);
@@ -81,6 +93,24 @@ struct RecordedPass {
 
 // The robot stops at every step, so that travel is exact; the run itself triggers in motion.
 Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const PassOptions& options);
+
+// As a spot's pass is judged: jitter, travel and the point whose drift counts are the spot's.
+AlignmentOptions alignment_options(const Spot& spot);
+
+struct JudgedPass {
+    Spot spot;  // as it was when it was passed
+    RecordedPass pass;
+    AlignmentOptions options;
+    AlignmentResult result;
+    std::optional<ContourCurve>
+        curve;  // of the spot's feature over the travel; nothing: found in too few profiles
+    bool acceptable() const { return curve && result.status == AlignmentStatus::frozen; }
+};
+// Error (input): no profile was seen, or check_alignment()'s.
+Expected<JudgedPass> judge_pass(const Spot& spot, RecordedPass pass, const AlignmentOptions& options);
+// `is`, the spot as the project has it by now, with the pass accepted: curve and jitter. Beside it belongs the evidence,
+// frozen_contour(). Error (input): not acceptable, or the spot was changed since it was passed.
+Expected<Spot> with_pass(const Spot& is, const JudgedPass& judged);
 
 // `spot` turned about its reference point by the rotation that cures the drift; reference profile and curve
 // are gone with the pose that they were about.

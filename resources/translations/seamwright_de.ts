@@ -237,7 +237,86 @@
     </message>
 </context>
 <context>
+    <name>StripePanel</name>
+    <message>
+        <source>Stripe in the image</source>
+        <translation>Streifen im Bild</translation>
+    </message>
+    <message>
+        <source>Filter of the profile</source>
+        <translation>Filter des Profils</translation>
+    </message>
+</context>
+<context>
     <name>Words</name>
+    <message>
+        <source>Cut along</source>
+        <translation>Geschnitten entlang</translation>
+    </message>
+    <message>
+        <source>Middle of the stripe by</source>
+        <translation>Mitte des Streifens durch</translation>
+    </message>
+    <message>
+        <source>Peaks a line</source>
+        <translation>Maxima je Zeile</translation>
+    </message>
+    <message>
+        <source>Least height of a peak</source>
+        <translation>Mindesthöhe eines Maximums</translation>
+    </message>
+    <message>
+        <source>Least width of a peak</source>
+        <translation>Mindestbreite eines Maximums</translation>
+    </message>
+    <message>
+        <source>Largest width of a peak</source>
+        <translation>Größte Breite eines Maximums</translation>
+    </message>
+    <message>
+        <source>Smoothing (Steger)</source>
+        <translation>Glättung (Steger)</translation>
+    </message>
+    <message>
+        <source>Noise of a point</source>
+        <translation>Rauschen eines Punkts</translation>
+    </message>
+    <message>
+        <source>Acceptance band, sigmas</source>
+        <translation>Annahmeband, Sigma</translation>
+    </message>
+    <message>
+        <source>Longest burst of outliers</source>
+        <translation>Längste Folge von Ausreißern</translation>
+    </message>
+    <message>
+        <source>Weight of the newest point</source>
+        <translation>Gewicht des neuesten Punkts</translation>
+    </message>
+    <message>
+        <source>First sigma of the spacing</source>
+        <translation>Anfängliches Sigma des Abstands</translation>
+    </message>
+    <message>
+        <source>Shortest segment, points</source>
+        <translation>Kürzestes Segment, Punkte</translation>
+    </message>
+    <message>
+        <source>As the sensor delivers it</source>
+        <translation>Wie vom Sensor geliefert</translation>
+    </message>
+    <message>
+        <source>centre of gravity</source>
+        <translation>Schwerpunkt</translation>
+    </message>
+    <message>
+        <source>Gaussian curve</source>
+        <translation>Gauß-Kurve</translation>
+    </message>
+    <message>
+        <source>ridge (Steger)</source>
+        <translation>Grat (Steger)</translation>
+    </message>
     <message>
         <source>Side</source>
         <translation>Seite</translation>
@@ -5728,10 +5807,6 @@ ausgelassen</translation>
     <message>
         <source>Recording the pass</source>
         <translation>Durchfahrt aufzeichnen</translation>
-    </message>
-    <message>
-        <source>spot %1: no profile was seen on the whole pass</source>
-        <translation>Messstelle %1: auf der ganzen Durchfahrt wurde kein Profil gesehen</translation>
     </message>
     <message>
         <source>Moving the simulated robot</source>

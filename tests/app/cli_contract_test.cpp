@@ -12,7 +12,7 @@
 #include <tuple>
 
 #include "core/geometry/pose.h"
-#include "tests/app/run_program.h"
+#include "tests/app/cli_case.h"
 
 namespace seamwright {
 namespace {
@@ -20,33 +20,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-class Cli : public testing::Test {
-  protected:
-    std::filesystem::path folder = test_folder("cli");
-    ~Cli() override { std::filesystem::remove_all(folder); }
-
-    std::string write(const std::string& name, const std::string& text) {
-        std::ofstream(folder / name, std::ios::binary) << text;
-        return (folder / name).string();
-    }
-    ProgramResult run(const std::vector<std::string>& arguments) { return run_program(arguments, folder); }
-    // Runs with --json - and parses the answer; the exit code is checked.
-    json answer(std::vector<std::string> arguments, int exit_code) {
-        arguments.insert(arguments.end(), {"--json", "-"});
-        const ProgramResult r = run(arguments);
-        EXPECT_EQ(r.exit_code, exit_code) << r.err;
-        return json::parse(r.out, nullptr, false);
-    }
-    // Bad input: exit 2, exactly one line on stderr, nothing on stdout.
-    void expect_refused(const std::vector<std::string>& arguments, const std::string& sentence_part,
-                        int exit_code = 2) {
-        const ProgramResult r = run(arguments);
-        EXPECT_EQ(r.exit_code, exit_code) << r.err;
-        EXPECT_THAT(r.err, HasSubstr(sentence_part));
-        EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
-        EXPECT_EQ(r.out, "");
-    }
-};
+using Cli = CliCase;
 
 // A door of n spots around an ellipse, displaced by D: the edge runs along each sensor's Y, the cut is where
 // the displaced straight edge meets the sensor's plane. Built from the definition of the measurement, not

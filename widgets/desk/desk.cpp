@@ -8,6 +8,7 @@
 #include "devices/registry.h"
 #include "devices/simulated/scene/mesh_file.h"
 #include "projects/calibrate/session/session.h"
+#include "projects/calibrate/session/use.h"
 #include "projects/file/project_json.h"
 #include "projects/measure/fields.h"
 #include "projects/measure/measure.h"
@@ -59,7 +60,7 @@ Expected<void> valid<SensorSetup>(const Project&, const SensorSetup& sensor) {
     if (std::none_of(drivers.begin(), drivers.end(), [&](const auto& d) { return d.name == sensor.driver; }))
         return input_error(Text("the driver \"{}\" is not known", sensor.driver),
                            Text("sensor {}", sensor.id));
-    return check(sensor.filter);
+    return validate_fields(sensor);
 }
 template <>
 Expected<void> valid<RobotSetup>(const Project&, const RobotSetup& robot) {
@@ -523,6 +524,14 @@ Expected<void> Desk::set_spot_field(const SpotId& id, const std::string& field, 
     return edit(after, QString::fromStdString(field));
 }
 
+Expected<void> Desk::set_sensor_field(const SensorId& id, const std::string& field, double value) {
+    const SensorSetup* sensor = find_sensor(project_, id.text());
+    if (!sensor) return input_error(Text("there is no sensor \"{}\"", id.text()));
+    SensorSetup after = *sensor;
+    SEAM_OK(set_field(after, field, value));
+    return edit(after, QString::fromStdString(field));
+}
+
 Expected<void> Desk::set_region_field(const RegionId& id, const std::string& field, double value) {
     const int at = index_of<Region>(project_, id.text());
     if (at < 0) return input_error(Text("there is no region \"{}\"", id.text()));
@@ -536,12 +545,7 @@ Expected<void> Desk::use_calibration(const SensorId& sensor_id, const Calibratio
     if (at < 0) return input_error(Text("there is no sensor \"{}\"", sensor_id.text()));
     const SensorSetup& sensor = project_.sensors[static_cast<std::size_t>(at)];
     if (sensor.calibration_id == calibration_id.text()) return {};
-    const int c = index_of<Calibration>(project_, calibration_id.text());
-    if (!calibration_id.empty() && c < 0)
-        return input_error(Text("there is no calibration \"{}\"", calibration_id.text()));
-    if (c >= 0 && project_.calibrations[static_cast<std::size_t>(c)].sensor_id != sensor_id.text())
-        return input_error(Text("calibration {} belongs to another sensor", calibration_id.text()),
-                           Text("sensor {}", sensor_id.text()));
+    SEAM_OK(calibration_use(project_, sensor_id.text(), calibration_id.text()));
     push(std::make_unique<CmdCalibrationUse>(editor(), sensor, static_cast<std::size_t>(at),
                                              calibration_id.text()));
     return {};

@@ -76,6 +76,7 @@ class Desk : public QObject {
     Expected<void> edit(const T& after, const QString& what = {});
     Expected<void> set_spot_enabled(const std::string& id, bool enabled);
     Expected<void> set_spot_field(const SpotId& id, const std::string& field, double value);
+    Expected<void> set_sensor_field(const SensorId& id, const std::string& field, double value);
     Expected<void> set_region_field(const RegionId& id, const std::string& field, double value);
     Expected<void> use_calibration(const SensorId& sensor_id, const CalibrationId& calibration_id);
     // Adds calibrations, and with `use` has each sensor use its own: all or none, one step of undo.

@@ -59,8 +59,8 @@ AlignPage::AlignPage(Desk& desk, const Views& views)
     box().addStretch(1);
 
     connect(&desk_.worker(), &StationWorker::passed, this,
-            [this](const std::shared_ptr<const PassResult>& pass) {
-                pass_ = std::make_shared<PassResult>(*pass);
+            [this](const std::shared_ptr<const JudgedPass>& pass) {
+                pass_ = std::make_shared<JudgedPass>(*pass);
                 show_result();
             });
     connect(views_.align, &AlignView::jitter_dragged, this, &AlignPage::judge);
@@ -116,11 +116,8 @@ void AlignPage::do_deed(SpotDeed deed) {
 
 void AlignPage::start() {
     if (!spot()) return;
-    AlignmentOptions options;
-    options.jitter_mm = spot()->jitter_mm;
+    AlignmentOptions options = alignment_options(*spot());
     options.tolerance_mm = tolerance_->value();
-    options.window_mm = std::max(spot()->entry_mm, spot()->exit_mm);
-    options.reference_mm = Eigen::Vector2d(spot()->reference_mm.x(), spot()->reference_mm.z());
     desk_.worker().record_pass(*spot(), step_->value(), options);
 }
 
@@ -135,7 +132,7 @@ void AlignPage::judge(double jitter_mm) {
 }
 
 void AlignPage::show_result() {
-    accept_->setEnabled(here() && pass_->curve && pass_->result.status == AlignmentStatus::frozen);
+    accept_->setEnabled(here() && pass_->acceptable());
     adopt_->setEnabled(here() && pass_->result.status == AlignmentStatus::drifting);
     if (!here()) {
         const bool accepted = spot() && spot()->curve;
@@ -177,12 +174,14 @@ void AlignPage::show_result() {
 }
 
 void AlignPage::accept() {
-    if (!spot() || !pass_ || !pass_->curve) return;
-    Spot s = *spot();
-    s.curve = pass_->curve;
-    s.jitter_mm = pass_->options.jitter_mm;
-    if (!done(desk_.edit(s, tr("alignment")))) return;
-    done(desk_.record({0, {}, 0, frozen_contour(s.id, pass_->result, pass_->options)}));
+    if (!spot() || !pass_) return;
+    const auto after = with_pass(*spot(), *pass_);
+    if (!after) {
+        done(tl::unexpected(after.error()));
+        return;
+    }
+    if (!done(desk_.edit(*after, tr("alignment")))) return;
+    done(desk_.record({0, {}, 0, frozen_contour(after->id, pass_->result, pass_->options)}));
 }
 
 void AlignPage::adopt() {

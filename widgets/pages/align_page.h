@@ -33,7 +33,7 @@ class AlignPage : public StepPage {
     QDoubleSpinBox *step_, *tolerance_;
     QPushButton *start_, *accept_, *adopt_;
     QLabel *verdict_, *numbers_;
-    std::shared_ptr<PassResult> pass_;
+    std::shared_ptr<JudgedPass> pass_;
 };
 
 }  // namespace seamwright

@@ -117,6 +117,11 @@ CellPage::CellPage(Desk& desk, const Views& views)
     parameters_box_ = new QVBoxLayout(parameters_);
     parameters_box_->setContentsMargins(0, 0, 0, 0);
     box().addWidget(parameters_);
+    stripe_ = new StripePanel(desk_);
+    stripe_->setObjectName("stripe_panel");
+    connect(stripe_, &StripePanel::refused, this,
+            [this](const Error& error) { done(tl::unexpected(error)); });
+    box().addWidget(stripe_);
 
     box().addWidget(make_heading(tr("Part")));
     part_ = make_text({});
@@ -270,6 +275,7 @@ void CellPage::show_device() {
         show_table();
     }
     answers_->setText(identity);
+    stripe_->refresh(sensor ? find_sensor(p, id) : nullptr);
     show_parameters();
 }
 

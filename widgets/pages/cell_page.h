@@ -10,6 +10,7 @@
 #include "widgets/editors/pose_editor.h"
 #include "widgets/editors/settings_editor.h"
 #include "widgets/pages/parts/step_page.h"
+#include "widgets/pages/parts/stripe_panel.h"
 
 namespace seamwright {
 
@@ -47,6 +48,7 @@ class CellPage : public StepPage {
     QWidget *mode_row_, *parameters_, *simulated_;
     QVBoxLayout* parameters_box_;
     PoseEditor* workobject_;
+    StripePanel* stripe_;
     std::vector<ParameterEditor*> requirements_;
     const SettingTable* shown_table_ = nullptr;
     std::string shown_parameters_;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/features/kinds/feature_registry.h"
-#include "core/profile/taught_profile.h"
 #include "devices/registry.h"
 #include "projects/measure/fields.h"
 #include "projects/measure/measure.h"
@@ -314,22 +313,13 @@ void TeachPage::listen_to_profile() {
 void TeachPage::take_reference(const TaughtSpot& taught) {
     const Spot* s = find_spot(desk_.project(), taught.spot.id);
     if (!s) return;
-    if (!measured_alike(*s, taught.spot)) {
-        done(input_error("it was changed while its reference was measured", Text("spot {}", s->id),
-                         "measure the reference again"));
+    const auto after = with_taught(*s, taught);
+    if (!after) {
+        done(tl::unexpected(after.error()));
         return;
     }
-    // Only what was measured: weights and limits may have been edited meanwhile. The curve of an
-    // earlier pass was about the old reference.
-    Spot after = *s;
-    after.reference_mm = taught.spot.reference_mm;
-    after.reference_profile = taught.spot.reference_profile;
-    after.reference_arrivals = taught.spot.reference_arrivals;
-    after.reference_light = taught.spot.reference_light;
-    after.reference_state = taught.spot.reference_state;
-    after.curve.reset();
-    if (done(desk_.edit(after, tr("reference")))) {
-        spread_of_ = after;
+    if (done(desk_.edit(*after, tr("reference")))) {
+        spread_of_ = *after;
         spread_->setText(tr("Spread of %1 measurements: x %2 mm, z %3 mm (1 sigma); %4 left out")
                              .arg(taught.measurements.size())
                              .arg(number(taught.spread_mm.x(), 4), number(taught.spread_mm.y(), 4))
@@ -583,22 +573,14 @@ void TeachPage::take_template(const QRectF& window) {
     const Spot* s = spot();
     if (!s || s->feature.kind != "template") return;
     const auto snapshot = desk_.live().latest(s->sensor_id);
-    const Profile piece = snapshot
-                              ? cut_out(snapshot->profile,
-                                        Eigen::AlignedBox2d(Eigen::Vector2d(window.left(), window.top()),
-                                                            Eigen::Vector2d(window.right(), window.bottom())))
-                              : Profile();
-    if (piece.size() < 20) {
-        done(input_error("the window holds fewer than 20 points of the contour", Text("spot {}", s->id),
-                         "drag a larger one"));
+    const auto after = with_template(*s, snapshot ? snapshot->profile : Profile(),
+                                     Eigen::AlignedBox2d(Eigen::Vector2d(window.left(), window.top()),
+                                                         Eigen::Vector2d(window.right(), window.bottom())));
+    if (!after) {
+        done(tl::unexpected(after.error()));
         return;
     }
-    Spot after = *s;
-    after.feature.template_profile = piece;
-    // Until it is clicked: the contour point in the middle of the window.
-    const std::size_t middle = piece.size() / 2;
-    after.feature.template_reference_mm = {piece.x_mm[middle], piece.z_mm[middle]};
-    change(after, tr("template"));
+    change(*after, tr("template"));
     views_.profile->set_tool(ProfilePlot::Tool::inspect);
 }
 

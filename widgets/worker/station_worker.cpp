@@ -236,18 +236,9 @@ void StationWorker::record_pass(const Spot& spot, double step_mm, const Alignmen
         options.progress = progress_sink();
         auto pass = seamwright::record_pass(station, spot, options);
         if (!pass) return emit failed(shown_error(tr("The pass was not recorded."), pass.error()));
-        auto result = std::make_shared<PassResult>();
-        result->spot = spot;
-        result->pass = std::move(*pass);
-        result->options = alignment;
-        if (result->pass.profiles.empty())
-            return emit failed(
-                tr("spot %1: no profile was seen on the whole pass").arg(QString::fromStdString(spot.id)));
-        auto judged = check_alignment(result->pass.profiles, alignment);
+        auto judged = judge_pass(spot, std::move(*pass), alignment);
         if (!judged) return emit failed(shown_error(tr("The pass cannot be judged."), judged.error()));
-        result->result = std::move(*judged);
-        if (auto curve = fit_contour_curve(result->pass.references)) result->curve = *curve;
-        emit passed(std::move(result));
+        emit passed(std::make_shared<const JudgedPass>(std::move(*judged)));
     });
 }
 

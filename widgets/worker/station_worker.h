@@ -54,14 +54,6 @@ struct LightOfSpot {
     FoundLight light;
 };
 
-struct PassResult {
-    Spot spot;  // as it was
-    RecordedPass pass;
-    AlignmentOptions options;
-    AlignmentResult result;
-    std::optional<ContourCurve> curve;  // of the spot's feature over the travel
-};
-
 class StationWorker : public QObject {
     Q_OBJECT
   public:
@@ -126,7 +118,7 @@ class StationWorker : public QObject {
     void taught(std::shared_ptr<const seamwright::TaughtSpot> taught);
     void light_found(std::shared_ptr<const seamwright::LightOfSpot> found);
     void confirmed(std::shared_ptr<const seamwright::Confirmation> confirmation);
-    void passed(std::shared_ptr<const seamwright::PassResult> pass);
+    void passed(std::shared_ptr<const seamwright::JudgedPass> pass);
     // What failed is in them: who asked for it says it.
     void shots_taken(std::shared_ptr<const seamwright::CalibrationShots> shots);
 

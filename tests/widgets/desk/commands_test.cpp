@@ -99,6 +99,8 @@ std::vector<Edit> edits() {
              return d.edit(
                  with(d.project().sensors[0], [](SensorSetup& s) { s.settings["exposure_us"] = 0.1; }));
          }},
+        {"SensorField", "Change per_line of sensor A",
+         [](Desk& d) { return d.set_sensor_field(SensorId("A"), "per_line", 5); }},
         {"RobotAdd", "Add robot N",
          [=](Desk& d) { return d.add(with(d.project().robots[0], [](RobotSetup& r) { r.id = "N"; }), 0); }},
         {"RobotRemove", "Remove robot R2", [](Desk& d) { return d.remove<RobotSetup>("R2"); }},
@@ -306,6 +308,9 @@ TEST_F(Commands, WhatIsWrongIsRefusedAndChangesNothing) {
     refused(desk.remove<SensorSetup>("A"), "spot S1 uses it");
     refused(desk.remove<RobotSetup>("R1"), "spot S1 uses it");
     refused(desk.use_calibration(SensorId("B"), CalibrationId("C1")), "another sensor");
+    refused(desk.set_sensor_field(SensorId("A"), "per_line", 0), "per_line");
+    refused(desk.set_sensor_field(SensorId("A"), "lookahead", 50), "min_segment_points");
+    refused(desk.set_sensor_field(SensorId("Z"), "per_line", 3), "\"Z\"");
     const Calibration good = with(p.calibrations[0], [](Calibration& c) { c.id = "M"; });
     const Calibration lost = with(good, [](Calibration& c) { c.id = "N", c.sensor_id = "Z"; });
     refused(desk.take_calibrations({lost}, true), "\"Z\"");

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "app/cli/arguments/board_argument.h"
 #include "app/cli/command.h"
 #include "app/cli/commands/calibrate/calibrate_live.h"
 #include "app/cli/sign_in.h"
@@ -252,25 +253,6 @@ Expected<Answer> calibrate(const CalibrationMethod& method, const CalibrateArgum
     return answer;
 }
 
-void add_image_options(CLI::App& command, CalibrateArguments& a) {
-    command
-        .add_option("--board", a.board.counts,
-                    "Inner corners (chessboard), dots (circles), squares (charuco) or tags (aprilgrid)")
-        ->type_name("7x6");
-    command.add_option("--pitch-mm", a.board.pitch_mm, "Pitch of the board");
-    command.add_option("--pattern", a.board.pattern, "chessboard, circles, charuco or aprilgrid")
-        ->check(CLI::IsMember({"chessboard", "circles", "charuco", "aprilgrid"}))
-        ->capture_default_str();
-    command.add_option("--marker-mm", a.board.marker_mm,
-                       "Edge of a marker (charuco; else found from the pictures) or a tag (aprilgrid)");
-    command.add_option("--dictionary", a.board.dictionary,
-                       "Of the markers, by OpenCV's name, e.g. 5x5_100; else the family that fits is found");
-    command
-        .add_option("--legacy-pattern", a.board.legacy,
-                    "yes: charuco of an even number of rows as OpenCV drew it before 4.6; else what fits")
-        ->check(CLI::IsMember({"yes", "no"}));
-}
-
 void add_method(CommandLine& line, CLI::App& group, const CalibrationMethod& method) {
     auto a = std::make_shared<CalibrateArguments>();
     CLI::App* command = line.add(group, method.id, method.help,
@@ -317,7 +299,7 @@ void add_method(CommandLine& line, CLI::App& group, const CalibrationMethod& met
     }
     if (method.table)
         command->add_option("--table", a->table, "Where the table itself goes")->type_name("TABLE.lut");
-    if (images) add_image_options(*command, *a);
+    if (images) add_board_options(*command, a->board);
     if (method.capture != CaptureKind::files && method.capture != CaptureKind::touch)
         add_live_options(*command, method, a->live);
     line.on(command, [&method, a] { return calibrate(method, *a); });

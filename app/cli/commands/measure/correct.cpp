@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <limits>
 #include <set>
 
 #include "app/cli/answers/result_json.h"
 #include "app/cli/command.h"
+#include "app/cli/commands/measure/contour_spot.h"
 #include "core/correction/correction.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
@@ -17,8 +21,16 @@ namespace {
 
 using nlohmann::json;
 
+// A spot told by contours, and where it stands in the job.
+struct JobContour {
+    std::string id;
+    std::size_t place = 0;
+    Feature found;
+};
+
 struct Job {
-    std::vector<SpotObservation> spots;
+    std::vector<SpotObservation> spots;  // without those whose contour was refused
+    std::vector<JobContour> contours;
     CorrectionOptions options;
 };
 
@@ -49,12 +61,49 @@ Expected<Eigen::Matrix2d> read_covariance(const json& rows, const std::string& p
     return c;
 }
 
-Expected<SpotObservation> read_spot(const json& spot, const std::string& path, bool needs_measured) {
-    if (auto known = only_fields(
-            spot,
-            {"id", "workobject_from_sensor", "reference", "measured", "weights", "sigma_mm", "covariance_mm2",
-             "sensor", "reference_covariance_mm2", "robot_covariance", "reference_arrivals"},
-            path);
+// Reference and measure of a spot told by points.
+Expected<void> read_points(const json& spot, const std::string& path, bool needs_measured,
+                           SpotObservation& s) {
+    SEAM_TRY(auto reference, json_vector3(spot, "reference", path));
+    s.reference_mm = s.measured_mm = reference;
+    if (needs_measured) {
+        SEAM_TRY(auto measured, json_vector3(spot, "measured", path));
+        s.measured_mm = measured;
+    }
+    return {};
+}
+
+// Of one told by contours, into a spot whose other fields are read; what the registration found.
+Expected<Feature> read_contours(const json& spot, const std::string& path,
+                                const std::filesystem::path& folder, bool needs_measured,
+                                SpotObservation& s) {
+    if (spot.contains("measured"))
+        return input_error("a point and a contour are two ways to tell a spot", json_path(path, "measured"),
+                           "give \"curve\" or \"measured\"");
+    Eigen::Matrix2d own = s.covariance_mm2.value_or(Eigen::Matrix2d::Zero());
+    if (!own.allFinite() || !(std::abs(own(0, 1) - own(1, 0)) <= 1e-9 * own.norm()) || own(0, 0) < 0 ||
+        own.determinant() < -1e-12 * own.squaredNorm())
+        return input_error("the covariance is not symmetric and positive", json_path(path, "covariance_mm2"));
+    if (spot.contains("sigma_mm")) {
+        if (!(s.sigma_mm >= 0)) return input_error("a sigma is negative", json_path(path, "sigma_mm"));
+        own += s.sigma_mm * s.sigma_mm * Eigen::Matrix2d::Identity();
+    }
+    SEAM_TRY(auto contour, find_contour(spot, path, folder, needs_measured));
+    take_contour(contour, own, s);
+    // Taught with one profile, whose noise is the same for all parts to come. A run's registration holds both noises.
+    if (!needs_measured && !s.reference_covariance_mm2)
+        s.reference_covariance_mm2 = contour.found.covariance_mm2;
+    return contour.found;
+}
+
+Expected<SpotObservation> read_spot(const json& spot, const std::string& path,
+                                    const std::filesystem::path& folder, bool needs_measured,
+                                    std::optional<Feature>& contour) {
+    if (auto known = only_fields(spot,
+                                 {"id", "workobject_from_sensor", "reference", "measured", "reference_curve",
+                                  "curve", "window", "weights", "sigma_mm", "covariance_mm2", "sensor",
+                                  "reference_covariance_mm2", "robot_covariance", "reference_arrivals"},
+                                 path);
         !known)
         return tl::unexpected(known.error());
     SpotObservation s;
@@ -63,11 +112,11 @@ Expected<SpotObservation> read_spot(const json& spot, const std::string& path, b
     SEAM_TRY(auto pose, json_field(spot, "workobject_from_sensor", path));
     SEAM_TRY(auto parsed, parse_pose(*pose, json_path(path, "workobject_from_sensor")));
     s.workobject_from_sensor = parsed;
-    SEAM_TRY(auto reference, json_vector3(spot, "reference", path));
-    s.reference_mm = s.measured_mm = reference;
-    if (needs_measured) {
-        SEAM_TRY(auto measured, json_vector3(spot, "measured", path));
-        s.measured_mm = measured;
+    if (!told_by_contours(spot)) {
+        if (spot.contains("window"))
+            return input_error("only a contour is looked for in a window", json_path(path, "window"),
+                               "give \"reference_curve\" with it");
+        SEAM_OK(read_points(spot, path, needs_measured, s));
     }
     if (spot.contains("weights")) {
         SEAM_TRY(auto weights, json_vector3(spot, "weights", path));
@@ -99,6 +148,9 @@ Expected<SpotObservation> read_spot(const json& spot, const std::string& path, b
         return input_error("no number of arrivals", json_path(path, "reference_arrivals"),
                            "give how many arrivals of the robot the reference is the mean of, 1 or more");
     s.reference_arrivals = static_cast<int>(arrivals);
+    if (told_by_contours(spot)) {
+        SEAM_TRY(contour, read_contours(spot, path, folder, needs_measured, s));
+    }
     return s;
 }
 
@@ -143,10 +195,19 @@ Expected<Job> read_job(const std::string& file, bool needs_measured) {
     SEAM_OK(only_fields(document, {"spots", "free", "limits", "sensors"}, ""));
     SEAM_TRY(auto spots, json_array(document, "spots", ""));
     Job job;
+    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+    std::set<std::string> refused;
     for (std::size_t i = 0; i < spots->size(); ++i) {
-        SEAM_TRY(auto spot, read_spot((*spots)[i], json_path("spots", i), needs_measured));
-        job.spots.push_back(std::move(spot));
+        std::optional<Feature> contour;
+        SEAM_TRY(auto spot, read_spot((*spots)[i], json_path("spots", i), folder, needs_measured, contour));
+        if (contour) job.contours.push_back({spot.id, i, *contour});
+        if (!contour || contour->status == FeatureStatus::ok)
+            job.spots.push_back(std::move(spot));
+        else if (!refused.insert(spot.id).second)
+            return input_error(Text("\"{}\" is named twice", spot.id), json_path("spots", i));
     }
+    for (const SpotObservation& spot : job.spots)
+        if (refused.contains(spot.id)) return input_error(Text("\"{}\" is named twice", spot.id), "spots");
     if (document.contains("free") && !document["free"].is_null()) {
         SEAM_TRY(auto list, json_array(document, "free", ""));
         SEAM_TRY(auto free, read_free(*list));
@@ -174,22 +235,80 @@ Expected<Job> read_job(const std::string& file, bool needs_measured) {
     return job;
 }
 
+// What the contours said, into the spots of the answer, which are those of the job in its order.
+void tell_contours(const Job& job, Answer& answer) {
+    json& spots = answer.json["spots"];
+    for (const JobContour& c : job.contours) {
+        json registration = feature_json(c.found);
+        if (c.found.status == FeatureStatus::ok) {
+            for (json& spot : spots)
+                if (spot["id"] == c.id) spot["registration"] = registration;
+            continue;
+        }
+        answer.text +=
+            fmt::format("  {:<12} refused: {}: {}\n", c.id, to_string(c.found.status), c.found.message);
+        const std::size_t place = std::min(c.place, spots.size());
+        spots.insert(spots.begin() + static_cast<std::ptrdiff_t>(place),
+                     json{{"id", c.id},
+                          {"residual_mm", nullptr},
+                          {"used", false},
+                          {"registration", std::move(registration)}});
+    }
+}
+
+// No contour of the job was found: there is nothing to solve, which is a verdict and no bad input.
+template <class Result>
+Result nothing_left() {
+    Result result;
+    result.status = CorrectionStatus::under_determined;
+    const double unknown = std::numeric_limits<double>::infinity();
+    for (auto* c : {&result.covariance, &result.covariance_random}) c->diagonal().setConstant(unknown);
+    for (auto* s : {&result.sigma_xyz_mm, &result.sigma_abc_deg, &result.sigma_random.xyz_mm,
+                    &result.sigma_random.abc_deg})
+        s->setConstant(unknown);
+    return result;
+}
+
 Expected<Answer> correct(const std::string& file) {
     SEAM_TRY(auto job, read_job(file, true));
-    SEAM_TRY(auto result, solve_region(job.spots, job.options));
+    RegionCorrection result;
+    if (job.spots.empty() && !job.contours.empty()) {
+        result = nothing_left<RegionCorrection>();
+        result.message = "the contour of no spot was found";
+    } else {
+        SEAM_TRY(result, solve_region(job.spots, job.options));
+    }
     Answer answer;
     answer.json = correction_json(result);
     answer.text = correction_text(result);
+    tell_contours(job, answer);
     answer.exit_code = result.status == CorrectionStatus::ok ? kExitOk : kExitVerdict;
     return answer;
 }
 
 Expected<Answer> plan(const std::string& file) {
     SEAM_TRY(auto job, read_job(file, false));
-    SEAM_TRY(auto result, plan_region(job.spots, job.options));
+    RegionPlan result;
+    if (job.spots.empty() && !job.contours.empty()) {
+        result = nothing_left<RegionPlan>();
+        result.advice = "the contour of no spot tells where it is";
+    } else {
+        SEAM_TRY(result, plan_region(job.spots, job.options));
+    }
     Answer answer;
     answer.json = plan_json(result);
     answer.text = plan_text(result);
+    // A plan lists no spots; those of contours are named with what they can tell.
+    if (!job.contours.empty()) {
+        json contours = json::array();
+        for (const JobContour& c : job.contours) {
+            contours.push_back({{"id", c.id}, {"registration", feature_json(c.found)}});
+            if (c.found.status != FeatureStatus::ok)
+                answer.text += fmt::format("  {:<12} refused: {}: {}\n", c.id, to_string(c.found.status),
+                                           c.found.message);
+        }
+        answer.json["contours"] = std::move(contours);
+    }
     answer.exit_code = result.status == CorrectionStatus::ok ? kExitOk : kExitVerdict;
     return answer;
 }
@@ -214,7 +333,17 @@ void add_correct(CommandLine& line) {
         "  \"robot_covariance\":6x6 (one arrival), \"reference_arrivals\":n (that the reference is the mean "
         "of),\n"
         "  and \"sensors\":{\"A\":{\"hand_eye_covariance\":6x6,\n"
-        "  \"scale_sigma\":[kx,kz],\"shear_sigma\":s}}; 6x6 of translation (mm) and rotation vector (rad).");
+        "  \"scale_sigma\":[kx,kz],\"shear_sigma\":s}}; 6x6 of translation (mm) and rotation vector (rad).\n"
+        "  A spot may be told by contours: \"reference_curve\":[[x,z],..] as taught and \"curve\":[[x,z],..] "
+        "of the "
+        "run, or CSV\n"
+        "  files beside the job, in place of \"measured\"; \"reference\":[x,0,z] (default: the curve's "
+        "middle) is "
+        "carried along by\n"
+        "  the registration of `match`, whose covariance enters; \"window\":[dx,dz,dphi] is how far it is "
+        "looked "
+        "for. One that\n"
+        "  slides or fits at two places is refused by name, and the others decide.");
     auto file = std::make_shared<std::string>();
     command->add_option("job", *file, "The job (JSON)")->required()->type_name("JOB.json");
     line.on(command, [file] { return correct(*file); });

@@ -6,16 +6,15 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "app/cli/arguments/calibration_argument.h"
 #include "app/cli/arguments/feature_setting.h"
 #include "app/cli/arguments/pose_argument.h"
 #include "app/cli/command.h"
 #include "core/profile/stripe/peaks.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
-#include "devices/exchange/lookup_table_file.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/replay/recording.h"
-#include "projects/calibrate/session/answer.h"
 #include "projects/file/project_file.h"
 #include "projects/reuse/exchange.h"
 
@@ -34,58 +33,6 @@ struct ImportArguments {
     bool rows = false, columns = false, replace = false, look = false;
     double sigma_mm = FolderImport{}.sigma_mm, sigma_limit_mm = FolderImport{}.sigma_limit_mm;
 };
-
-Calibration named_after(const std::string& path, Calibration made) {
-    made.id = fs::path(path).stem().string();
-    made.source = path;
-    made.created_utc = utc_now();
-    return made;
-}
-
-// A table says where pixels lie in the sensor's plane, and not how well; its verdict is that of the one who brings it.
-Expected<Calibration> table_calibration(const std::string& path) {
-    SEAM_TRY(auto table, read_lookup_table(path));
-    Calibration c;
-    c.method = "lut";
-    c.verdict = Verdict::usable;
-    c.model.emplace().table = std::move(table);
-    return named_after(path, std::move(c));
-}
-
-// Of a project (the one named, or its only one that turns pixels into millimetres), what `calibrate` answered, or a
-// table that it wrote.
-Expected<Calibration> read_calibration(const std::string& path, const std::string& id) {
-    if (path.ends_with(".lut")) return table_calibration(path);
-    if (path.ends_with(".json")) {
-        SEAM_TRY(auto answer, read_json_file(path));
-        const auto named = answer.find("method");
-        const CalibrationMethod* method =
-            named != answer.end() && named->is_string() ? find_method(named->get<std::string>()) : nullptr;
-        auto solution = solution_from_document(answer);
-        const bool turns = solution && (std::holds_alternative<CameraAndLaser>(solution->found) ||
-                                        std::holds_alternative<SensorOnFlange>(solution->found));
-        if (!method || !solution || (!turns && solution->verdict() != Verdict::undetermined))
-            return input_error("is no answer of calibrate stripe-camera or tcp-sphere", path,
-                               "give that, or a project that holds the calibration");
-        auto made = calibration_of_solution(*method, json::object(), {}, *solution, nullptr);
-        if (!made) return made;
-        return named_after(path, std::move(*made));
-    }
-    SEAM_TRY(auto file, ProjectFile::open(path, FileAccess::read_only));
-    SEAM_TRY(auto project, file.load());
-    std::string there;
-    std::vector<const Calibration*> fit;
-    for (const Calibration& c : project.calibrations) {
-        there += (there.empty() ? "" : ", ") + c.id;
-        if (id.empty() ? c.method != "pixels" : c.id == id) fit.push_back(&c);
-    }
-    if (fit.size() == 1) return *fit.front();
-    if (there.empty()) return input_error("the project holds no calibration", path);
-    return input_error(id.empty()
-                           ? fmt::format("the project holds {} calibrations that could be meant", fit.size())
-                           : fmt::format("the project has no calibration \"{}\"", id),
-                       path, Text("say which with --calibration-id: {}", there));
-}
 
 // What images need and do not say: the channel that shows the stripe, and how it runs.
 Expected<void> look_at_images(const ImportArguments& a, FolderImport& options, std::vector<Text>& notes) {

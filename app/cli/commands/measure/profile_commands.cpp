@@ -10,13 +10,18 @@
 
 #include "app/cli/answers/result_json.h"
 #include "app/cli/arguments/feature_setting.h"
+#include "app/cli/arguments/filter_options.h"
 #include "app/cli/arguments/no_return_option.h"
 #include "app/cli/command.h"
+#include "app/cli/commands/measure/contour_spot.h"
+#include "app/cli/commands/project/pass.h"
+#include "app/cli/sign_in.h"
 #include "core/features/kinds/feature_registry.h"
 #include "core/profile/filter.h"
 #include "core/profile/units.h"
 #include "devices/exchange/tables/profile_csv.h"
 #include "projects/file/project_file.h"
+#include "projects/station/teach.h"
 
 namespace seamwright::cli {
 namespace {
@@ -58,19 +63,6 @@ Expected<Profile> read_filtered(const std::string& file, const std::string& unit
     if (!profile) return profile;
     if (!profile->filtered()) SEAM_OK(filter_profile(*profile, options));
     return profile;
-}
-
-void add_filter_options(CLI::App* command, FilterOptions& o) {
-    command
-        ->add_option("--noise-mm", o.noise_mm,
-                     "Standard deviation of a point; 0 = estimated from the profile")
-        ->capture_default_str();
-    command->add_option("--band", o.band_sigmas, "Acceptance band in predicted standard deviations")
-        ->capture_default_str();
-    command->add_option("--lookahead", o.lookahead, "Longest burst of outliers, points")
-        ->capture_default_str();
-    command->add_option("--min-segment", o.min_segment_points, "Shorter pieces are outliers, points")
-        ->capture_default_str();
 }
 
 Expected<Answer> filter(const std::string& in, const std::string& out, const std::string& unit,
@@ -150,20 +142,11 @@ struct MatchArguments {
     NoReturnOption invalid;
 };
 
-// The landmark that the window is about: the middle of the template's points unless told.
-Eigen::Vector2d middle(const Profile& profile) {
-    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-    double n = 0;
-    for (std::size_t i = 0; i < profile.size(); ++i)
-        if (profile.segment[i] != kOutlier) sum += Eigen::Vector2d(profile.x_mm[i], profile.z_mm[i]), ++n;
-    return n > 0 ? Eigen::Vector2d(sum / n) : sum;
-}
-
 Expected<Answer> match(MatchArguments& a) {
     SEAM_TRY(auto contour, read_filtered(a.template_file, a.unit, a.invalid, a.filter));
     SEAM_TRY(auto scene, read_filtered(a.scene_file, a.unit, a.invalid, a.filter));
     const Eigen::Vector2d reference =
-        a.reference.size() == 2 ? Eigen::Vector2d(a.reference[0], a.reference[1]) : middle(contour);
+        a.reference.size() == 2 ? Eigen::Vector2d(a.reference[0], a.reference[1]) : middle_of(contour);
     SEAM_TRY(auto matcher, ContourMatcher::make(contour, reference));
     SearchWindow window;
     if (!a.window.empty()) {
@@ -185,7 +168,8 @@ Expected<Answer> match(MatchArguments& a) {
 }
 
 struct AlignArguments {
-    std::string file, unit, project, spot;
+    std::string file, unit, project, spot, live_spot;
+    bool live = false;
     std::optional<double> jitter_mm, tolerance_mm, window_mm;
     std::vector<double> reference;
     NoReturnOption invalid;
@@ -203,9 +187,7 @@ Expected<AlignmentOptions> alignment_options(const AlignArguments& a) {
                                        [&](const Spot& s) { return s.id == a.spot; });
         if (spot == project.spots.end())
             return input_error(Text("the project has no spot \"{}\"", a.spot), "--spot");
-        options.jitter_mm = spot->jitter_mm;
-        options.window_mm = std::max(spot->entry_mm, spot->exit_mm);
-        options.reference_mm = Eigen::Vector2d(spot->reference_mm.x(), spot->reference_mm.z());
+        options = alignment_options(*spot);
     }
     if (a.jitter_mm) options.jitter_mm = *a.jitter_mm;
     if (a.tolerance_mm) options.tolerance_mm = *a.tolerance_mm;
@@ -214,7 +196,27 @@ Expected<AlignmentOptions> alignment_options(const AlignArguments& a) {
     return options;
 }
 
+// On the devices of a project, whose spot stands behind its file.
+Expected<Answer> align_live(const AlignArguments& a) {
+    if (a.live_spot.empty()) return usage_error("no spot is named", "--live", "give FILE.seam SPOT --live");
+    if (!a.project.empty() || !a.spot.empty())
+        return usage_error("the spot stands behind its project", "--project, --spot",
+                           "give FILE.seam SPOT --live");
+    LivePass pass;
+    pass.file = a.file;
+    pass.spot = a.live_spot;
+    pass.jitter_mm = a.jitter_mm;
+    pass.tolerance_mm = a.tolerance_mm;
+    pass.window_mm = a.window_mm;
+    if (a.reference.size() == 2) pass.reference_mm = Eigen::Vector2d(a.reference[0], a.reference[1]);
+    return pass_on_devices(pass, PassDeed::record);
+}
+
 Expected<Answer> align(AlignArguments& a) {
+    if (a.live) return align_live(a);
+    if (!a.live_spot.empty())
+        return usage_error(Text("\"{}\" is one file too many", a.live_spot), "align",
+                           "a spot is passed with --live; of a recorded pass it is --spot");
     const std::string &file = a.file, &unit = a.unit;
     SEAM_TRY(auto options, alignment_options(a));
     SEAM_TRY(auto pass, read_align_csv(file));
@@ -317,8 +319,15 @@ void add_align(CommandLine& line) {
     CLI::App* command = line.add("align", "Does the contour stand still while the robot passes the spot?",
                                  "seamwright align pass.csv --jitter-mm 5 --json -\n"
                                  "  seamwright align pass.csv --project cell.seam --spot S1\n"
+                                 "  seamwright align cell.seam S1 --live\n"
                                  "  pass.csv: travel_mm,profile_index,x_mm,z_mm");
-    command->add_option("in", a->file, "The recorded pass")->required()->type_name("SEQ.csv");
+    command->add_option("in", a->file, "The recorded pass; with --live the project")
+        ->required()
+        ->type_name("SEQ.csv|FILE.seam");
+    command->add_option("live-spot", a->live_spot, "With --live: the spot that is passed")->type_name("SPOT");
+    command->add_flag("--live", a->live,
+                      "On the project's devices: the robot passes the spot, nothing is kept (see `pass`)");
+    add_sign_in(command);
     command->add_option("--project", a->project, "Project whose spot says jitter, travel and reference point")
         ->type_name("P.seam");
     command->add_option("--spot", a->spot, "Spot of the project that was passed")->type_name("ID");

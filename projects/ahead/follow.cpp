@@ -129,10 +129,10 @@ Expected<void> record(Station& station, FollowedRun& followed, const FollowOptio
         run.events.push_back(std::move(e));
         return {};
     };
+    if (followed.figures.alarm) SEAM_OK(event(EventKind::alarm, *followed.figures.alarm));
     if (followed.figures.alarm && run.status != RunStatus::ok) {
         run.message = Text("alarm: {}; {}", *followed.figures.alarm, run.message);
         run.status = RunStatus::alarm;
-        SEAM_OK(event(EventKind::alarm, *followed.figures.alarm));
         SEAM_OK(station.file().update_run(run));
     }
     if (followed.figures.cycles > 0)
@@ -141,11 +141,6 @@ Expected<void> record(Station& station, FollowedRun& followed, const FollowOptio
 }
 
 }  // namespace
-
-Expected<void> check_follow(Station& station, const FollowOptions& options) {
-    SEAM_TRY(const auto prepared, prepare(station, options));
-    return same_sensor(prepared);
-}
 
 Expected<FollowedRun> follow_run(Station& station, RunOptions options, const FollowOptions& follow) {
     SEAM_TRY(auto p, prepare(station, follow));
@@ -159,6 +154,7 @@ Expected<FollowedRun> follow_run(Station& station, RunOptions options, const Fol
     setup.line = follow.line;
     setup.limit_mm = follow.limit_mm;
     setup.sigma_limit_mm = p.region.sigma_limit_mm;
+    setup.total_limit_mm = p.region.limits.translation_mm;
     AheadSensorSetup ahead;
     ahead.flange_from_sensor = p.calibration->flange_from_sensor;
     ahead.latency_s = p.latency_ms / 1e3;

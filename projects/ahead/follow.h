@@ -5,8 +5,8 @@
 // One gate, one permission: the spots are measured, every region passes the gate, the frame is written and confirmed;
 // only then may the path run, and only then anything is added. Refused before anything moves are a robot that takes no
 // corrections in every cycle, a sensor without a calibration that serves, a latency that nobody has proven, a guide
-// that is none. The online offset is limited by `limit_mm`, and with the frame by the robot's own settings in every
-// cycle (devices/cyclic/corrector.h).
+// that is none. The online offset is limited by `limit_mm`; with the frame's own shift at the tool by the region's
+// translation limit, and by the robot's settings in every cycle (devices/cyclic/corrector.h).
 //
 // An alarm of the steering or of the link leads the correction back and stops the path; the run is then an `alarm`
 // with its reason, the frames are taken back. What was told is an event of the run in any case.
@@ -39,10 +39,7 @@ struct FollowedRun {
     Pose base_from_moved = Pose::Identity();  // of the frame that was pushed, with the displacement taken off
 };
 
-// What would be refused, without moving anything: the setup of `options` on this project. Error: as above.
-Expected<void> check_follow(Station& station, const FollowOptions& options);
-
-// `run.push` is meant in any case. Error: what check_follow() and Station::run() refuse.
+// `run.push` is meant in any case. Error: what is refused before anything moves, and what Station::run() refuses.
 Expected<FollowedRun> follow_run(Station& station, RunOptions run, const FollowOptions& options);
 
 // The contour from a pass over the taught part (gap_check.h) by the recipe of a spot, smoothed (guide.h). Error: an

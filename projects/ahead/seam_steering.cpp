@@ -139,11 +139,12 @@ SeamSteering::Wanted SeamSteering::wanted(const CyclicPacket& packet, const Eige
     figures_.largest_mm = std::max(figures_.largest_mm, present_mm.norm());
     // Before the guide and behind it nothing is known: what is told stays.
     if (foot.beyond) return {held_, Eigen::Vector3d::Zero(), {}};
-    return on_guide(foot, present_mm);
+    return on_guide(p, foot, present_mm);
 }
 
 // Precondition: locked.
-SeamSteering::Wanted SeamSteering::on_guide(const GuideCurve::Foot& foot, const Eigen::Vector3d& present_mm) {
+SeamSteering::Wanted SeamSteering::on_guide(const Eigen::Vector3d& p, const GuideCurve::Foot& foot,
+                                            const Eigen::Vector3d& present_mm) {
     const AheadOffset known = line_.at(foot.s_mm);
     // The sensor has come to the guide's end: there is nothing more to know.
     const bool at_end = known.state == AheadState::behind && sensor_beyond_;
@@ -174,6 +175,13 @@ SeamSteering::Wanted SeamSteering::on_guide(const GuideCurve::Foot& foot, const 
     const Eigen::Matrix<double, 3, 2> across = to_reference * guide_.directions(foot.s_mm).rightCols<2>();
     Wanted wanted;
     wanted.offset_mm = across * known.off_mm;
+    const Eigen::Vector3d of_frame = setup_.base_from_moved * p - p;
+    const double total = (of_frame + setup_.base_from_reference.linear() * wanted.offset_mm).norm();
+    if (!(total <= std::max(setup_.total_limit_mm, of_frame.norm())))
+        return refuse(Text(
+            "online correction: frame and offset together are {:.2f} mm at the tool, beyond the region's "
+            "limit of {:.2f} mm",
+            total, setup_.total_limit_mm));
     wanted.rate_mm_s = across * known.slope * (step_mm_ / setup_.cycle_s);
     held_ = wanted.offset_mm;
     const double behind = (wanted.offset_mm - present_mm).norm();

@@ -14,8 +14,9 @@
 //
 // Ended by an alarm, which leads everything back and stops the path, are: a stretch without a feature longer than
 // DelayLineOptions::most_gap_mm, seen at the sensor and not only at the tool; a tool that has come behind the newest
-// measure; a contour farther off the frame than `limit_mm`, in kBeyond features in a row or asked for by the tool; a
-// sigma of the offset over `sigma_limit_mm`; a robot that stays more than `behind_mm` behind what is wanted for `behind_s`.
+// measure; a contour farther off the frame than `limit_mm`, in kBeyond features in a row or asked for by the tool; an
+// offset that takes the whole correction at the tool beyond `total_limit_mm`; a sigma of the offset over
+// `sigma_limit_mm`; a robot that stays more than `behind_mm` behind what is wanted for `behind_s`.
 
 #include <cstdint>
 #include <mutex>
@@ -37,6 +38,7 @@ struct SteeringSetup {
     Pose base_from_moved = Pose::Identity();  // B
     DelayLineOptions line;
     double limit_mm = 3, sigma_limit_mm = 0.1;
+    double total_limit_mm = 25;  // of B p - p + v
     double behind_mm = 0.5, behind_s = 2;
 };
 
@@ -80,7 +82,8 @@ class SeamSteering final : public PathSteering {
   private:
     Wanted refuse(Text why) const;
     std::optional<Text> lost_at_sensor();
-    Wanted on_guide(const GuideCurve::Foot& foot, const Eigen::Vector3d& present_mm);
+    Wanted on_guide(const Eigen::Vector3d& p, const GuideCurve::Foot& foot,
+                    const Eigen::Vector3d& present_mm);
 
     const GuideCurve guide_;
     const SteeringSetup setup_;

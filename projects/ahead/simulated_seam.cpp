@@ -19,6 +19,8 @@ namespace {
 constexpr double kBeadInboardMm = 10.5,
                  kLandMm = -0.8;         // of the bead; of the land against the flange's top (door.h)
 constexpr double kSensorInboardMm = 15;  // of the sensor's origin (DoorSpot)
+constexpr const char* kFollowedSpot = "T2";
+constexpr double kRimMm = 42;
 constexpr double kGuideMarginMm = 20, kTeachStepMm = 1;
 constexpr double kLeadIn_s = 0.6;  // of the controller with EGM (egm_application.h)
 constexpr double kStandsMm = 1e-4;
@@ -30,7 +32,8 @@ Eigen::Vector3d bead_at(double arc_mm) {
 
 double upper_side_arc_mm() {
     const auto spots = default_door_spots();
-    const auto t2 = std::find_if(spots.begin(), spots.end(), [](const DoorSpot& s) { return s.id == "T2"; });
+    const auto t2 =
+        std::find_if(spots.begin(), spots.end(), [](const DoorSpot& s) { return s.id == kFollowedSpot; });
     double best = 0, least = 1e9;
     for (double arc = 0; arc < door_edge_length_mm(); arc += 1) {
         const double d = (door_edge(arc).point_mm - t2->workobject_from_sensor.translation()).norm();
@@ -97,6 +100,31 @@ Project door_project(const SimulatedCell& cell, bool finished_profiles) {
     return p;
 }
 
+Spot& followed_spot(Project& project) {
+    return *std::find_if(project.spots.begin(), project.spots.end(),
+                         [](const Spot& s) { return s.id == kFollowedSpot; });
+}
+
+// The rim from its edge to the ramp. A line of the sensor is 0.16 mm wide, and a contour's end is known no better: where
+// the sensor rides along with the contour, that error does not average out. The whole shape does not know it.
+FeatureRecipe rim_template(const Profile& seen) {
+    FeatureRecipe recipe;
+    recipe.kind = "template";
+    double left = 1e9;
+    for (std::size_t i = 0; i < seen.size(); ++i)
+        if (seen.segment[i] != kOutlier) left = std::min(left, seen.x_mm[i]);
+    Profile& piece = recipe.template_profile;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        if (seen.segment[i] == kOutlier || seen.x_mm[i] > left + kRimMm) continue;
+        piece.x_mm.push_back(seen.x_mm[i]);
+        piece.z_mm.push_back(seen.z_mm[i]);
+        piece.segment.push_back(seen.segment[i]);
+    }
+    if (piece.size() > 0)
+        recipe.template_reference_mm = {piece.x_mm[piece.size() / 2], piece.z_mm[piece.size() / 2]};
+    return recipe;
+}
+
 std::uint16_t free_tcp_port() {
     return TcpListener::listen("127.0.0.1", 0)->port();
 }
@@ -157,6 +185,7 @@ Expected<std::unique_ptr<SimulatedSeam>> SimulatedSeam::make(const SimulatedSeam
                       {"session_gap_ms", 2000},
                       {"measuring", measuring}};
     if (!rsi) robot.settings.update({{"speed_mm_s", 40}, {"acceleration_mm_s2", 400}});
+    robot.settings.update(options.link);
 
     SEAM_TRY(auto created, ProjectFile::create(file, project, true));
     seam->station_.emplace(std::move(created), project);
@@ -179,11 +208,14 @@ Expected<std::unique_ptr<SimulatedSeam>> SimulatedSeam::make(const SimulatedSeam
                                    workobject_from_tcp(begin - s, options.look_ahead_mm) *
                                    flange_from_tcp.inverse());
         SEAM_TRY(const auto pass, gap_pass(station, drive));
-        SEAM_TRY(seam->follow_.guide, taught_guide(project, "T2", pass));
+        project = station.project();
+        followed_spot(project).feature = rim_template(pass.sections[pass.sections.size() / 2].profile);
+        SEAM_OK(station.edit(project));
+        SEAM_TRY(seam->follow_.guide, taught_guide(project, kFollowedSpot, pass));
         station.disconnect();
     }
     seam->follow_.region_id = "seam";
-    seam->follow_.spot_id = "T2";
+    seam->follow_.spot_id = kFollowedSpot;
     seam->follow_.guide_source = "the pass over the undisplaced part";
 
     cell->store_program(measuring_program(project, "R1"));

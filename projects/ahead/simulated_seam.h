@@ -27,7 +27,8 @@ struct SimulatedSeamOptions {
     std::function<std::unique_ptr<ProfileSource>(const std::shared_ptr<SimulatedCell>&)> sensor = {};
     // Between the two, where packets get lost: given the controller's port, answers the one that it is to send to.
     std::function<std::uint16_t(std::uint16_t link_port)> wire = {};
-    nlohmann::json controller = nlohmann::json::object();  // further settings of it
+    // Further settings of the controller and of the robot's link.
+    nlohmann::json controller = nlohmann::json::object(), link = nlohmann::json::object();
 };
 
 // One cycle of the controller.

@@ -48,6 +48,9 @@ struct Seam {
 std::unique_ptr<Seam> seam_of(SimulatedSeamOptions options) {
     auto seam = std::make_unique<Seam>();
     options.length_mm = 160;
+    // A machine that is busy elsewhere answers late more often than a plant's.
+    options.link = {{"max_late", 1000}};
+    options.controller = {{"late_limit", 500}};
     options.sensor = [faults = seam->faults](const std::shared_ptr<SimulatedCell>& cell) {
         return std::make_unique<CutSensor>(cell, faults);
     };
@@ -58,7 +61,7 @@ std::unique_ptr<Seam> seam_of(SimulatedSeamOptions options) {
     seam->follow = seam->cell->follow();
     // A machine that pauses for a second loses no contour; the sensor is 60 mm ahead.
     seam->follow.line.most_gap_mm = 40;
-    seam->follow.frame_timeout = std::chrono::milliseconds(5000);
+    seam->follow.frame_timeout = std::chrono::milliseconds(30000);
     return seam;
 }
 
@@ -79,15 +82,17 @@ void expect_no_step(const SimulatedSeam& seam, double speed_mm_s, double cycle_s
     EXPECT_GT(largest, 0) << "there was a correction at all";
 }
 
-// What was in force shrank, cycle by cycle, before the program ended it.
-void expect_ramp_out(const SimulatedSeam& seam) {
-    double peak = 0, last = 0;
-    for (const SeamSample& s : seam.history()) {
-        const double size = distance_mm(s.corrected, s.programmed);
-        peak = std::max(peak, size);
-        if (size > 0) last = size;
-    }
-    EXPECT_LT(last, peak - 0.5);
+// What was added to the frame shrank from cycle to cycle, until the program ended it with the stopped path.
+void expect_ramp_out(const SimulatedSeam& seam, const Pose& base_from_moved) {
+    std::vector<double> added;
+    for (const SeamSample& s : seam.history())
+        if (distance_mm(s.corrected, s.programmed) > 1e-9)
+            added.push_back(
+                (s.corrected.translation() - base_from_moved * s.programmed.translation()).norm());
+    ASSERT_GT(added.size(), 20u);
+    // Of two in a row one may be the same: an answer was late.
+    for (std::size_t i = added.size() - 5; i < added.size(); ++i) EXPECT_LE(added[i], added[i - 1] + 1e-9);
+    EXPECT_LT(added.back(), added[added.size() - 20] - 0.02);
 }
 
 bool has_event(const RunRecord& run, EventKind kind, const std::string& words) {
@@ -128,8 +133,8 @@ TEST_P(Follow, ABendThatTheFrameCannotFollowIsFollowed) {
     EXPECT_GT(e.travelled_mm, 120);
     EXPECT_GT(e.without.worst_mm, 1);
     EXPECT_GT(e.frame.worst_mm, 0.25);
-    EXPECT_LT(e.online.worst_mm, 0.18);
-    EXPECT_LT(e.online.worst_mm, 0.5 * e.frame.worst_mm);
+    EXPECT_LT(e.online.worst_mm, 0.12);
+    EXPECT_LT(e.online.worst_mm, 0.4 * e.frame.worst_mm);
     EXPECT_GT(f.stored, 10u);
     EXPECT_GT(f.largest_mm, 0.2);
     EXPECT_FALSE(f.alarm);
@@ -150,7 +155,9 @@ TEST(Follow, APartThatLiesAsTaughtIsLeftAlone) {
     const auto followed = follow_run(seam->cell->station(), {}, seam->follow);
     ASSERT_TRUE(followed) << followed.error().sentence();
     ASSERT_EQ(followed->run.status, RunStatus::ok) << followed->run.message.english();
-    EXPECT_LT(judge_seam(*seam->cell, followed->base_from_moved).online.worst_mm, 0.1);
+    const SeamErrors e = judge_seam(*seam->cell, followed->base_from_moved);
+    EXPECT_LT(e.online.worst_mm, 0.06);
+    EXPECT_LT(followed->figures.largest_mm, 0.15);
 }
 
 // The path stops, everything is led back to zero, the run says why, and the frames are as before.
@@ -181,7 +188,7 @@ TEST(Follow, AKilledSensorLeadsTheCorrectionBack) {
     const auto followed = follow_run(seam->cell->station(), {}, seam->follow);
     expect_led_back(*seam, followed, "the sensor has found no contour for");
     expect_no_step(*seam->cell, 20, 0.004);
-    expect_ramp_out(*seam->cell);
+    expect_ramp_out(*seam->cell, followed->base_from_moved);
 }
 
 TEST(Follow, ASensorThatSeesNoContourLeadsTheCorrectionBack) {
@@ -256,7 +263,6 @@ TEST(Follow, RefusesBeforeAnythingMoves) {
     const auto seam = seam_of({});
     ASSERT_TRUE(seam);
     Station& station = seam->cell->station();
-    ASSERT_TRUE(check_follow(station, seam->follow));
     const auto refusal = [&](auto change) {
         FollowOptions options = seam->follow;
         change(options);
@@ -277,9 +283,7 @@ TEST(Follow, RefusesBeforeAnythingMoves) {
     project.calibrations[0].method = "tcp-sphere";
     ASSERT_TRUE(station.edit(project));
     EXPECT_THAT(refusal([](FollowOptions&) {}), HasSubstr("is not proven"));
-    FollowOptions stated = seam->follow;
-    stated.latency_ms = 0;
-    EXPECT_TRUE(check_follow(station, stated));
+    // One that a person states will do; then the sensor is asked who it is.
     project.calibrations[0].sensor_identity.serial = "another";
     ASSERT_TRUE(station.edit(project));
     EXPECT_THAT(refusal([](FollowOptions& o) { o.latency_ms = 0; }),

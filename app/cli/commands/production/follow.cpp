@@ -106,12 +106,12 @@ Expected<Answer> teach(FollowArguments& a) {
 }
 
 Expected<Answer> follow(FollowArguments& a) {
+    SEAM_TRY(a.follow.guide, read_guide(a.guide));
+    a.follow.guide_source = Text(a.guide);
     SEAM_TRY(auto station, open_station(a.file, Deed::push));
     SEAM_TRY(const auto type, called_type(station.project(), a.type));
     if (auto refused = refuse_unsafe(station, motion_findings(of_type(station.project(), type), true)))
         return *refused;
-    SEAM_TRY(a.follow.guide, read_guide(a.guide));
-    a.follow.guide_source = Text(a.guide);
     RunOptions options;
     options.part_id = a.part;
     options.part_type = type;

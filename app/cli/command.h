@@ -68,6 +68,7 @@ void add_drawing(CommandLine& line);
 void add_propose(CommandLine& line);
 void add_confirm(CommandLine& line);
 void add_run(CommandLine& line);
+void add_follow(CommandLine& line);
 void add_service(CommandLine& line);
 void add_record(CommandLine& line);
 void add_expose(CommandLine& line);

@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
     add_propose(line);
     add_confirm(line);
     add_run(line);
+    add_follow(line);
     add_service(line);
     add_record(line);
     add_expose(line);

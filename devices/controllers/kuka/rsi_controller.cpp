@@ -177,7 +177,9 @@ class Rsi final : public SimulatedRsi {
             } else {
                 missed();
             }
-            if (application_) application_->set_release(release_);
+            // One robot: its path does not begin before its measuring program has come to its end.
+            const bool measured = !measuring_ || measuring_->verdict() == PartVerdict::corrected;
+            if (application_) application_->set_release(release_ && measured);
             if (measured_.begins(measuring_.get())) part_begins();
             const bool correcting = std::any_of(sum_.begin(), sum_.end(), [](double x) { return x != 0; });
             const double size = Eigen::Vector3d(sum_[0], sum_[1], sum_[2]).norm();

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <tuple>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
 
 #include "core/geometry/notation.h"
 #include "projects/file/project_json.h"
@@ -219,13 +222,15 @@ class Reader {
     }
 
     void runs() {
-        std::map<std::int64_t, std::int64_t> cycles, gaps;
-        int setups = 0;
-        for (const auto& row : ask(fmt::format("SELECT status, type, purpose, count(*), "
-                                               "to_char(min(started), {0}), to_char(max(started), {0}) FROM "
-                                               "seamwright.run WHERE station = ANY ($1::int[]) AND {1} AND "
-                                               "($4::text = '' OR type = $4::text) GROUP BY 1, 2, 3",
-                                               kUtc, in_time("started")))) {
+        std::map<std::int64_t, std::int64_t> cycles;
+        std::set<std::pair<std::int64_t, std::int64_t>> setups;  // of a station
+        for (const auto& row :
+             ask(fmt::format("SELECT status, type, purpose, count(*), "
+                             "to_char(min(started), {0}), to_char(max(started), {0}), station, "
+                             "made_with FROM seamwright.run WHERE station = ANY ($1::int[]) AND {1} "
+                             "AND ($4::text = '' OR type = $4::text) GROUP BY status, type, purpose, "
+                             "station, made_with",
+                             kUtc, in_time("started")))) {
             const int n = count(row[3]);
             const auto purpose = static_cast<RunPurpose>(whole(row[2]));
             const auto status = run_status_from(row[0].c_str());
@@ -242,18 +247,15 @@ class Reader {
                 const std::string first = row[4].c_str(), last = row[5].c_str();
                 if (totals_.first_utc.empty() || first < totals_.first_utc) totals_.first_utc = first;
                 totals_.last_utc = std::max(totals_.last_utc, last);
+                setups.emplace(whole(row[6]), whole(row[7]));
             }
         }
+        production_.setups = setups.size();
         const std::string production = fmt::format(
             "station = ANY ($1::int[]) AND {} AND ($4::text = '' OR type = $4::text) AND purpose = 0 AND "
             "status NOT IN "
             "('cancelled', 'interrupted')",
             in_time("started"));
-        for (const auto& row :
-             ask("SELECT count(*) FROM (SELECT DISTINCT station, made_with FROM seamwright.run WHERE " +
-                 production + ") AS s"))
-            setups = count(row[0]);
-        production_.setups = static_cast<std::size_t>(setups);
         for (const auto& row :
              ask("SELECT cycle_ms, count(*) FROM seamwright.run WHERE cycle_ms IS NOT NULL AND " +
                  production + " GROUP BY cycle_ms ORDER BY cycle_ms"))

@@ -16,6 +16,7 @@ class FleetTarget {
     static Expected<FleetTarget> from(const std::string& uri);
 
     const std::string& name() const { return name_; }  // "postgresql://user@host:5432/database"
+    bool holds_password() const { return !password_.empty(); }
     // For libpq, the password in it. With limits of time: 5 s to connect, 10 s for a network that takes no bytes.
     const std::string& connection() const { return connection_; }
     // Somebody else's words without the password.

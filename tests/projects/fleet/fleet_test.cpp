@@ -67,13 +67,13 @@ class Fleet : public testing::Test {
         EXPECT_TRUE(s) << sentence(s);
         return s ? std::move(*s) : Statistics{};
     }
-    // Five days of 40 parts, some of which are refused, some over the limits, with a spot that is not seen now and then.
+    // Five days of 16 parts, some of which are refused, some over the limits, with a spot that is not seen now and then.
     std::vector<RunRecord> five_days(unsigned seed = 1, double middle = 0.5) {
         std::mt19937 rng(seed);
         std::normal_distribution<double> draw;
         std::vector<RunRecord> runs;
-        for (int i = 0; i < 200; ++i) {
-            const int minute = 1440 * (i / 40) + 7 * (i % 40);
+        for (int i = 0; i < 80; ++i) {
+            const int minute = 1440 * (i / 16) + 7 * (i % 16);
             RunRecord run =
                 i % 50 == 17 ? refused_run(minute, Text("{}: {}", "edge", Text("sigma {:.3f} mm", 0.01 * i)))
                 : i % 60 == 7
@@ -137,7 +137,7 @@ TEST_F(Fleet, StatisticsAreThoseOfTheFile) {
         runs.push_back(std::move(run));
     }
     auto file = make("a.seam", runs);
-    EXPECT_EQ(publish(file), 204);
+    EXPECT_EQ(publish(file), 84);
     EXPECT_GT(server_->ask("SELECT count(*) FROM seamwright.station_day WHERE done"), "4");
     for (const auto& [since, until] :
          {std::pair<std::string, std::string>{"", ""},
@@ -276,8 +276,8 @@ TEST_F(Fleet, AFileOfBeforeQueuesAllItsRuns) {
     }
     auto file = ProjectFile::open(folder_ / "a.seam");
     ASSERT_TRUE(file) << sentence(file);
-    EXPECT_EQ(*file->queued(), 200);
-    EXPECT_EQ(publish(*file), 200);
+    EXPECT_EQ(*file->queued(), 80);
+    EXPECT_EQ(publish(*file), 80);
     EXPECT_TRUE(file->check().empty());
 }
 
@@ -398,7 +398,7 @@ TEST_F(Fleet, ReadingNeedsNoRightToWrite) {
     const std::string uri = "postgresql://guest:g@127.0.0.1:" + std::to_string(server_->port()) + "/fleet";
     const auto s = fleet_statistics(target(uri), {});
     ASSERT_TRUE(s) << sentence(s);
-    EXPECT_EQ(s->parts, 198u);
+    EXPECT_EQ(s->parts, 78u);
     ASSERT_TRUE(file.append_run(five_days().front(), project_));
     EXPECT_THAT(sentence(publish_file(file, target(uri), {"left"})), HasSubstr("does not allow it"));
     EXPECT_EQ(*file.queued(), 1);

@@ -6,6 +6,7 @@
 #include "app/cli/commands/production/fleet.h"
 #include "devices/exchange/files.h"
 #include "projects/file/project_file.h"
+#include "projects/fleet/target.h"
 
 namespace seamwright::cli {
 namespace {
@@ -89,7 +90,18 @@ Expected<std::string> unit_text(const ServiceArguments& a, const std::filesystem
         escaped, line, a.user.empty() ? "" : "User=" + a.user + "\n");
 }
 
+// Everybody on the computer reads units.
+Expected<void> check_fleet(const std::string& url) {
+    if (url.empty()) return {};
+    SEAM_TRY(const auto target, FleetTarget::from(url));
+    if (target.holds_password())
+        return usage_error("a unit is no place for a password, everybody can read it", "--fleet",
+                           "leave it out and write it into ~/.pgpass of the unit's user");
+    return {};
+}
+
 Expected<Answer> service_command(const ServiceArguments& a) {
+    SEAM_OK(check_fleet(a.fleet));
     SEAM_TRY(const auto file, ProjectFile::open(a.file, FileAccess::read_only));
     SEAM_TRY(const auto users, file.users());
     if (a.push && !users.empty() && a.identity.empty())

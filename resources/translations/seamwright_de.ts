@@ -237,7 +237,7 @@
     </message>
 </context>
 <context>
-    <name>StripePanel</name>
+    <name>seamwright::StripePanel</name>
     <message>
         <source>Stripe in the image</source>
         <translation>Streifen im Bild</translation>

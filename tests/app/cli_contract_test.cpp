@@ -366,10 +366,16 @@ TEST_F(Cli, APathIsFollowedOnlyByAGuideAndARobotThatTakesCorrectionsInEveryCycle
     expect_refused(
         {"follow", project, "--guide", write("one.csv", "x_mm,y_mm,z_mm,a_deg,b_deg,c_deg\n0,0,0,0,0,0\n")},
         "two points");
-    expect_refused({"follow", project, "--guide", guide, "--limit-mm", "0"}, "limit-mm");
     expect_refused({"follow", project, "--guide", guide, "--teach"}, "--spot");
-    expect_refused({"follow", project, "--simulate", "ur-rtde"}, "ur-rtde");
-    expect_refused({"follow", project, "--bend-mm", "2"}, "--simulate");
+    const std::vector<std::pair<std::vector<std::string>, const char*>> wrong_options = {
+        {{"follow", project, "--guide", guide, "--limit-mm", "0"}, "limit-mm"},
+        {{"follow", project, "--simulate", "ur-rtde"}, "ur-rtde"},
+        {{"follow", project, "--bend-mm", "2"}, "--simulate"}};
+    for (const auto& [arguments, part] : wrong_options) {
+        const ProgramResult r = run(arguments);
+        EXPECT_EQ(r.exit_code, 2);
+        EXPECT_THAT(r.err, HasSubstr(part));
+    }
 }
 
 TEST_F(Cli, PlanPredictsWhatCorrectStates) {

@@ -65,7 +65,7 @@ TEST_F(StatisticsCommand, BadInputIsOneSentence) {
     refused({"statistics", file.string(), "--tolerance-mm", "nan"}, "tolerance");
     refused({"statistics", file.string(), file.string()}, "given twice");
     refused({"statistics", folder / "none.seam"}, "none.seam", 3);
-    refused({"statistics"}, "files");
+    refused({"statistics"}, "no file is given");
     refused({"statistics", file.string(), "--xlsx", "/nowhere/a.xlsx"}, "cannot be written", 3);
     // Nothing in this time: said, and no file that is read for an answer.
     const ProgramResult none =

@@ -46,7 +46,7 @@ namespace seamwright {
 namespace {
 
 constexpr int kPageWidth = 440;
-constexpr QSize kFirstSize(1440, 900), kSmallestSize(1180, 660);  // logical pixels
+constexpr QSize kFirstSize(1440, 900), kSmallestSize(1280, 768);  // logical pixels
 // What the live profile keeps of the window's height, whatever stands below it.
 constexpr double kProfileShare = 0.35;
 constexpr int kLayoutVersion = 2;

@@ -74,6 +74,8 @@ PathDialog::PathDialog(Desk& desk, SceneView& scene, QWidget* parent)
                        tr("Of a program; the path then has gaps there"));
     verdict_ = make_text({});
     verdict_->setObjectName("path_verdict");
+    verdict_->setMinimumHeight(2 * verdict_->fontMetrics().lineSpacing());  // the table takes what it can get
+    verdict_->setAlignment(Qt::AlignLeft | Qt::AlignTop);
     box->addWidget(verdict_);
     regions_ =
         make_table("path_regions", {tr("Region"), tr("Points"), tr("In transitions"), tr("Refused because")},

@@ -49,6 +49,7 @@ ProgramDialog::ProgramDialog(Desk& desk, QWidget* parent) : QDialog(parent), des
     box->addWidget(moves_, 1);
     verdict_ = make_text({});
     verdict_->setObjectName("program_verdict");
+    verdict_->setMinimumHeight(2 * verdict_->fontMetrics().lineSpacing());  // the table takes what it can get
     box->addWidget(verdict_);
     write_ = make_button("program_write", "export", tr("Write the files..."),
                          tr("Asks for a folder; nothing is sent to the robot"), [this] { choose_folder(); });

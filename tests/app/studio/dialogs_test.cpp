@@ -112,7 +112,7 @@ TEST_F(Dialogs, APathIsCorrectedByARunShownAndWritten) {
             << i;
     }
     // On the screen, with the scene in view.
-    window().findChild<QAction*>("show_scene")->trigger();
+    window().findChild<QAction*>("show_dock_scene")->trigger();
     window()
         .findChild<QDialog*>("path_dialog")
         ->grab()

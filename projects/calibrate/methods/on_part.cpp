@@ -1,6 +1,6 @@
 // {"passes":[{"id"?,"edge":"e1","profiles":[{"time_s","base_from_flange":POSE,"point":[x,z],"covariance":[[..],[..]]?}]}],
 //  "prior":{"flange_from_sensor":POSE,"covariance":6x6}?,"latency":"free" | seconds?,
-//  "robot":{"sigma_mm","sigma_deg"?}?}
+//  "robot":{"sigma_mm","sigma_deg"}?}
 // -> {"status":"ok|undetermined|not_converged","flange_from_sensor","covariance" 6x6 (tangent of pose.h: mm, rad; also as
 //     "covariance_pose"),"sigma":{"xyz_mm","abc_deg","working_mm"},"latency_s","latency_sigma_s","unobservable":[..],
 //     "advice" (one sentence),"next_passes":[..],"per_pass":[{"id","edge","profiles","left_out","used","rms_mm","note"}],
@@ -257,7 +257,7 @@ CalibrationMethod on_part_method() {
     m.usage = "passes.json --exclude P3";
     m.layout = R"({"passes":[{"id"?,"edge":"e1","profiles":[{"time_s","base_from_flange":POSE,"point":[x,z],
      "covariance":[[xx,xz],[xz,zz]]?},..]},..],"latency":"free" or seconds?,
-   "prior":{"flange_from_sensor":POSE,"covariance":6x6 (mm, rad)}?,"robot":{"sigma_mm","sigma_deg"?}?}
+   "prior":{"flange_from_sensor":POSE,"covariance":6x6 (mm, rad)}?,"robot":{"sigma_mm","sigma_deg"}?}
   p_k = F(t_k - latency) flange_from_sensor (x,0,z) lies on the edge; latency above zero: the profile is older than its stamp)";
     m.example = on_part_example;
     m.solve = solve_on_part;

@@ -1,4 +1,4 @@
-// The deeds with a window of their own, on the demo project: the path corrected by a run, the controller's program.
+// The deeds with a window of their own: the path corrected by a run, the controller's program, the gap along a path.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,9 @@
 #include "app/studio/studio.h"
 #include "devices/exchange/tables/path_csv.h"
 #include "devices/simulated/scene/door.h"
+#include "projects/reuse/simulated_truth.h"
 #include "tests/app/studio/person.h"
+#include "widgets/dialogs/gap_dialog.h"
 #include "widgets/dialogs/path_dialog.h"
 #include "widgets/dialogs/program_dialog.h"
 
@@ -157,6 +159,58 @@ TEST_F(Dialogs, TheControllersProgramIsWrittenForTheProjectOnTheScreen) {
     EXPECT_FALSE(write->isEnabled()) << "no spot, no program";
     EXPECT_FALSE(word(*dialog, "program_verdict").isEmpty());
     dialog->grab().save(QString(SEAMWRIGHT_SCREENS) + "/dialog_program.png");
+}
+
+// Two sheets that come together to 3 mm in the middle: the plot, the stretch by its spots, and the nozzle that fits once it
+// is smaller; nothing is measured again for that.
+TEST_F(Dialogs, AGapIsDrivenAlongJudgedAndWritten) {
+    DeskPerson me(window());
+    Desk& desk = studio->desk();
+    const auto project = simulated_gap_project({{"seed", 3}}, default_gap_stations(), folder / "sheets.ply");
+    ASSERT_TRUE(project) << project.error().sentence();
+    ASSERT_TRUE(desk.create(folder / "gap.seam", *project));
+    QApplication::processEvents();
+    auto* dialog = opened<GapDialog>("gap_check", "gap_dialog");
+    ASSERT_TRUE(dialog);
+    auto* write = dialog->findChild<QPushButton*>("gap_write");
+    auto* stretches = dialog->findChild<QTableWidget*>("gap_stretches");
+    EXPECT_FALSE(write->isEnabled());
+    EXPECT_FALSE(dialog->write(QString::fromStdString((folder / "none.csv").string())));
+    EXPECT_EQ(dialog->findChild<QLineEdit*>("gap_spots")->text(), "S1, S2, S3, S4");
+
+    // What cannot be driven is a sentence in the window.
+    dialog->findChild<QLineEdit*>("gap_spots")->setText("S1, S9");
+    dialog->drive();
+    ASSERT_TRUE(me.wait([&] { return word(*dialog, "gap_verdict").contains("not measured"); }))
+        << word(*dialog, "gap_verdict").toStdString();
+
+    dialog->findChild<QLineEdit*>("gap_spots")->setText("S1, S2,S3 ,S4");
+    dialog->findChild<NumberBox*>("gap_step")->setValue(4);
+    desk.worker().connect_devices();
+    ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
+    dialog->drive();
+    ASSERT_TRUE(QTest::qWaitFor([&] { return write->isEnabled(); }, 3 * kPatienceMs))
+        << word(*dialog, "gap_verdict").toStdString();
+    EXPECT_TRUE(word(*dialog, "gap_verdict").contains("does not pass"))
+        << word(*dialog, "gap_verdict").toStdString();
+    ASSERT_GT(stretches->rowCount(), 0);
+    EXPECT_TRUE(stretches->item(0, 0)->text().contains("S")) << stretches->item(0, 0)->text().toStdString();
+    QApplication::processEvents();
+    dialog->grab().save(QString(SEAMWRIGHT_SCREENS) + "/dialog_gap.png");
+
+    const int before = stretches->rowCount();
+    dialog->findChild<NumberBox*>("gap_nozzle")->setValue(0.5);
+    dialog->findChild<NumberBox*>("gap_clearance")->setValue(0.1);
+    EXPECT_LT(stretches->rowCount(), before);
+    dialog->findChild<NumberBox*>("gap_nozzle")->setValue(50);
+    EXPECT_TRUE(word(*dialog, "gap_verdict").contains("does not pass"));
+
+    const auto csv = folder / "gap.csv", html = folder / "gap.html";
+    ASSERT_TRUE(dialog->write(QString::fromStdString(csv.string())));
+    ASSERT_TRUE(dialog->write(QString::fromStdString(html.string())));
+    EXPECT_GT(std::filesystem::file_size(csv), 200u);
+    EXPECT_GT(std::filesystem::file_size(html), 2000u);
+    EXPECT_FALSE(dialog->write(QString::fromStdString((folder / "no" / "such" / "folder.csv").string())));
 }
 
 }  // namespace

@@ -3741,6 +3741,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
 <context>
     <name>seamwright::MainWindow</name>
     <message>
+        <source>Record what the devices deliver...</source>
+        <translation>Aufzeichnen, was die Geräte liefern...</translation>
+    </message>
+    <message>
         <source>Gap along a path...</source>
         <translation>Spalt entlang einer Bahn...</translation>
     </message>
@@ -5789,6 +5793,10 @@ ausgelassen</translation>
 <context>
     <name>seamwright::StationWorker</name>
     <message>
+        <source>Recording</source>
+        <translation>Aufzeichnung</translation>
+    </message>
+    <message>
         <source>Along the gap</source>
         <translation>Den Spalt entlang</translation>
     </message>
@@ -6930,6 +6938,89 @@ und %1 weitere</translation>
     <message>
         <source>does not pass</source>
         <translation>kommt nicht durch</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::RecordDialog</name>
+    <message>
+        <source>Record what the devices deliver</source>
+        <translation>Aufzeichnen, was die Geräte liefern</translation>
+    </message>
+    <message>
+        <source>Live profiles, teaching and runs go into the recording too, as long as it goes on. It is replayed as a sensor and a robot, and a gap or a path is judged from it later.</source>
+        <translation>Auch Live-Profile, Teachen und Läufe kommen in die Aufzeichnung, solange sie läuft. Sie wird als Sensor und Roboter wieder abgespielt, und ein Spalt oder eine Bahn wird später daraus beurteilt.</translation>
+    </message>
+    <message>
+        <source>Keep the raw images too</source>
+        <translation>Auch die Rohbilder behalten</translation>
+    </message>
+    <message>
+        <source>Of cameras: some MiB a frame; without them the profiles are kept</source>
+        <translation>Von Kameras: einige MiB je Bild; ohne sie bleiben die Profile</translation>
+    </message>
+    <message>
+        <source>Device</source>
+        <translation>Gerät</translation>
+    </message>
+    <message>
+        <source>Frames</source>
+        <translation>Bilder</translation>
+    </message>
+    <message>
+        <source>Damaged</source>
+        <translation>Beschädigt</translation>
+    </message>
+    <message>
+        <source>Lost</source>
+        <translation>Verloren</translation>
+    </message>
+    <message>
+        <source>Dropped</source>
+        <translation>Verworfen</translation>
+    </message>
+    <message>
+        <source>What is on the disk; dropped: the disk was too slow</source>
+        <translation>Was auf der Platte ist; verworfen: die Platte war zu langsam</translation>
+    </message>
+    <message>
+        <source>Record...</source>
+        <translation>Aufzeichnen...</translation>
+    </message>
+    <message>
+        <source>Asks for a file; the devices connect anew</source>
+        <translation>Fragt nach einer Datei; die Geräte werden neu verbunden</translation>
+    </message>
+    <message>
+        <source>Stop</source>
+        <translation>Beenden</translation>
+    </message>
+    <message>
+        <source>Ends the recording; the devices connect anew</source>
+        <translation>Beendet die Aufzeichnung; die Geräte werden neu verbunden</translation>
+    </message>
+    <message>
+        <source>Nothing is recorded.</source>
+        <translation>Es wird nichts aufgezeichnet.</translation>
+    </message>
+    <message>
+        <source>The recording is not whole.</source>
+        <translation>Die Aufzeichnung ist nicht vollständig.</translation>
+    </message>
+    <message>
+        <source>Recorded in %1, %2 MiB</source>
+        <translation>Aufgezeichnet in %1, %2 MiB</translation>
+    </message>
+    <message>
+        <source>Recording into %1, %2 MiB</source>
+        <translation>Aufzeichnung in %1, %2 MiB</translation>
+    </message>
+    <message>
+        <source>Recording</source>
+        <translation>Aufzeichnung</translation>
+    </message>
+    <message>
+        <source>Recordings (*.seam)</source>
+        <translation>Aufzeichnungen (*.seam)</translation>
     </message>
 </context>
 </TS>

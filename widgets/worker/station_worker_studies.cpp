@@ -101,6 +101,11 @@ void StationWorker::confirm(const std::string& spot_id) {
     });
 }
 
+void StationWorker::record_to(std::shared_ptr<Recorder> recorder) {
+    post(tr("Recording"), [=](Station& station, const std::stop_token&) { station.record_to(recorder); });
+    connect_devices();
+}
+
 void StationWorker::drive_gap(const DrivenGapPass& asked) {
     post(tr("Along the gap"), [=, this](Station& station, const std::stop_token& cancelled) {
         DrivenGapPass options = asked;

@@ -13,6 +13,7 @@
 #include "widgets/dialogs/gap_dialog.h"
 #include "widgets/dialogs/path_dialog.h"
 #include "widgets/dialogs/program_dialog.h"
+#include "widgets/dialogs/record_dialog.h"
 
 namespace seamwright {
 namespace {
@@ -211,6 +212,37 @@ TEST_F(Dialogs, AGapIsDrivenAlongJudgedAndWritten) {
     EXPECT_GT(std::filesystem::file_size(csv), 200u);
     EXPECT_GT(std::filesystem::file_size(html), 2000u);
     EXPECT_FALSE(dialog->write(QString::fromStdString((folder / "no" / "such" / "folder.csv").string())));
+}
+
+// A session with a run in it: what the file holds is what the devices delivered, and the gap check reads such files.
+TEST_F(Dialogs, ASessionIsRecordedWhileOneWorks) {
+    DeskPerson me(window());
+    Desk& desk = studio->desk();
+    auto* dialog = opened<RecordDialog>("record_session", "record_dialog");
+    ASSERT_TRUE(dialog);
+    const auto file = folder / "session.seam";
+    ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
+    std::ofstream(folder / "there.seam") << "not to be lost";
+    EXPECT_FALSE(dialog->start(QString::fromStdString((folder / "there.seam").string())));
+    ASSERT_TRUE(dialog->start(QString::fromStdString(file.string())));
+    EXPECT_FALSE(dialog->start(QString::fromStdString((folder / "second.seam").string()))) << "one at a time";
+    auto* sources = dialog->findChild<QTableWidget*>("record_sources");
+    ASSERT_TRUE(QTest::qWaitFor(
+        [&] { return sources->rowCount() > 0 && sources->item(0, 1)->text().toInt() > 0; }, 3 * kPatienceMs));
+    window().findChild<QAction*>("measure_now")->trigger();
+    ASSERT_TRUE(QTest::qWaitFor([&] { return desk.runs() && !desk.runs()->empty(); }, 3 * kPatienceMs));
+    dialog->grab().save(QString(SEAMWRIGHT_SCREENS) + "/dialog_record.png");
+    dialog->stop();
+    EXPECT_TRUE(word(*dialog, "record_verdict").contains("session.seam"));
+    auto reader = CaptureReader::open(file);
+    ASSERT_TRUE(reader) << reader.error().sentence();
+    EXPECT_EQ(reader->end(), "stopped");
+    EXPECT_GE(reader->sources().size(), 2u) << "sensor and robot";
+    // The devices are there again, without the recorder.
+    ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
+    const auto size = std::filesystem::file_size(file);
+    QTest::qWait(500);
+    EXPECT_EQ(std::filesystem::file_size(file), size);
 }
 
 }  // namespace

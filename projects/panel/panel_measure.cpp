@@ -358,6 +358,15 @@ RegionCorrection motion_as_correction(const PanelJob& job, const Pose& base_from
     return c;
 }
 
+void place_servo(const PanelJob& job, PanelRecord& record) {
+    PanelFit moved;
+    moved.gripper_motion = record.servo->motion;
+    record.base_from_moved_gripper = moved_gripper(record.base_from_gripper, moved);
+    record.base_from_frame = corrected_frame(
+        job.base_from_gripper, motion_as_correction(job, record.base_from_gripper, moved).displacement,
+        job.base_from_frame);
+}
+
 void compute_panel(const Project& project, const PanelJob& job, PanelRecord& record) {
     record.fit.reset();
     record.base_from_moved_gripper = record.base_from_gripper;
@@ -374,6 +383,7 @@ void compute_panel(const Project& project, const PanelJob& job, PanelRecord& rec
         if (std::find(record.refusals.begin(), record.refusals.end(), reason) == record.refusals.end())
             record.refusals.push_back(reason);
     }
+    if (record.servo) place_servo(job, record);
     record.verdict = judge_panel(job, record.after);
 }
 

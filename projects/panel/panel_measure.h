@@ -64,7 +64,11 @@ Pose moved_gripper(const Pose& base_from_gripper, const PanelFit& fit);
 RegionCorrection motion_as_correction(const PanelJob& job, const Pose& base_from_gripper,
                                       const PanelFit& fit);
 
+// The poses and the frame of a record by its servo's motion; `servo` is there.
+void place_servo(const PanelJob& job, PanelRecord& record);
+
 // Fit, poses and frame of a record from its `before`, verdict from `after`; what replay computes again.
+// Of a run that servoed the poses are those of its motion.
 void compute_panel(const Project& project, const PanelJob& job, PanelRecord& record);
 
 }  // namespace seamwright

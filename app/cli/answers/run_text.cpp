@@ -39,18 +39,37 @@ json places_json(const std::vector<PanelMeasurement>& places) {
     return list;
 }
 
+// The moves, and how far the single step would have gone elsewhere.
+json servo_json(const PanelRecord& p) {
+    json moves = json::array();
+    for (const PanelServoMove& m : p.servo->moves)
+        moves.push_back({{"motion", pose_json(m.motion)}, {"rms_mm", m.rms_mm}});
+    json out = {{"status", to_string(p.servo->status)},
+                {"moves", moves},
+                {"motion", pose_json(p.servo->motion)},
+                {"single_step", json()}};
+    if (p.fit)
+        out["single_step"] = {{"motion", pose_json(p.fit->gripper_motion)},
+                              {"rms_mm", p.fit->rms_mm},
+                              {"apart_mm", distance_mm(p.servo->motion, p.fit->gripper_motion)},
+                              {"apart_deg", deg_from_rad(angle_rad(p.servo->motion, p.fit->gripper_motion))}};
+    return out;
+}
+
 json panel_json(const PanelRecord& p) {
-    return {{"job", p.job_id},
-            {"verdict", to_string(p.verdict)},
-            {"before", places_json(p.before)},
-            {"after", places_json(p.after)},
-            {"fit", p.fit ? panel_fit_json(*p.fit) : json()},
-            {"base_from_gripper", pose_json(p.base_from_gripper)},
-            {"base_from_moved_gripper", pose_json(p.base_from_moved_gripper)},
-            {"base_from_frame", pose_json(p.base_from_frame)},
-            {"gate_passed", p.gate_passed},
-            {"refusals", p.refusals},
-            {"push", push_json(p.push)}};
+    json out = {{"job", p.job_id},
+                {"verdict", to_string(p.verdict)},
+                {"before", places_json(p.before)},
+                {"after", places_json(p.after)},
+                {"fit", p.fit ? panel_fit_json(*p.fit) : json()},
+                {"base_from_gripper", pose_json(p.base_from_gripper)},
+                {"base_from_moved_gripper", pose_json(p.base_from_moved_gripper)},
+                {"base_from_frame", pose_json(p.base_from_frame)},
+                {"gate_passed", p.gate_passed},
+                {"refusals", p.refusals},
+                {"push", push_json(p.push)}};
+    if (p.servo) out["servo"] = servo_json(p);
+    return out;
 }
 
 std::string panel_text(const RunRecord& run) {
@@ -63,6 +82,16 @@ std::string panel_text(const RunRecord& run) {
                         ? fmt::format("gap {:8.3f}   flush {:+8.3f} mm\n", m.gap_mm, m.flush_mm)
                         : fmt::format("{}: {}\n", to_string(m.status), m.message);
         }
+    if (p.servo) {
+        for (std::size_t i = 0; i < p.servo->moves.size(); ++i)
+            text +=
+                fmt::format("  move {:<2} gap and flush {:.4f} mm rms off\n", i, p.servo->moves[i].rms_mm);
+        text += fmt::format("servo: {}\n  S    {}\n", to_string(p.servo->status), pose_text(p.servo->motion));
+        if (p.fit)
+            text += fmt::format("the single step beside it, {:.4f} mm and {:.4f} deg apart:\n",
+                                distance_mm(p.servo->motion, p.fit->gripper_motion),
+                                deg_from_rad(angle_rad(p.servo->motion, p.fit->gripper_motion)));
+    }
     if (p.fit) text += panel_fit_text(*p.fit);
     for (const Text& reason : p.refusals) text += "  refused: " + reason.english() + "\n";
     if (run.push)

@@ -15,6 +15,7 @@
 #include "devices/controllers/kuka/controller.h"
 #include "devices/controllers/kuka/rsi_controller.h"
 #include "devices/controllers/ur/controller.h"
+#include "devices/exchange/files.h"
 #include "devices/genicam/genicam.h"
 #include "devices/genicam/genicam_settings.h"
 #include "devices/gocator/gocator.h"
@@ -200,6 +201,19 @@ Expected<std::vector<ProgramFile>> write_robot_program(const std::string& brand,
 Expected<std::vector<ProgramFile>> write_robot_path(const std::string& brand,
                                                     const PathProgramRequest& request) {
     return call(program_writers(), "robot brand", brand, &ProgramWriter::write_path, request);
+}
+
+Expected<std::vector<std::filesystem::path>> write_program_files(const std::filesystem::path& folder,
+                                                                 const std::vector<ProgramFile>& files) {
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    if (failed) return file_error(Text("the folder cannot be made: {}", failed.message()), folder.string());
+    std::vector<std::filesystem::path> written;
+    for (const ProgramFile& f : files) {
+        written.push_back(folder / f.name);
+        SEAM_OK(write_text_file(written.back(), f.text));
+    }
+    return written;
 }
 
 }  // namespace seamwright

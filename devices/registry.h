@@ -2,6 +2,7 @@
 // Drivers by name. Adding a sensor or a robot is one folder and one line in registry.cpp.
 
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -84,5 +85,9 @@ Expected<std::vector<ProgramFile>> write_robot_program(const std::string& brand,
                                                        const ProgramRequest& request);
 Expected<std::vector<ProgramFile>> write_robot_path(const std::string& brand,
                                                     const PathProgramRequest& request);
+
+// Makes the folder and writes them all; where they are. Error (file).
+Expected<std::vector<std::filesystem::path>> write_program_files(const std::filesystem::path& folder,
+                                                                 const std::vector<ProgramFile>& files);
 
 }  // namespace seamwright

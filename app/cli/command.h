@@ -68,6 +68,7 @@ void add_drawing(CommandLine& line);
 void add_propose(CommandLine& line);
 void add_confirm(CommandLine& line);
 void add_run(CommandLine& line);
+void add_follow(CommandLine& line);
 void add_service(CommandLine& line);
 void add_record(CommandLine& line);
 void add_expose(CommandLine& line);
@@ -82,6 +83,7 @@ void add_plate_pose(CommandLine& line);
 void add_hand_over(CommandLine& line);  // report, reteach
 void add_acceptance(CommandLine& line);
 void add_statistics(CommandLine& line);
+void add_fleet(CommandLine& line);
 void add_modes(CommandLine& line);
 void add_drift(CommandLine& line);
 void add_device_studies(CommandLine& line);  // measure-robot, measure-trigger

@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
     add_propose(line);
     add_confirm(line);
     add_run(line);
+    add_follow(line);
     add_service(line);
     add_record(line);
     add_expose(line);
@@ -24,6 +25,7 @@ int main(int argc, char** argv) {
     add_hand_over(line);
     add_acceptance(line);
     add_statistics(line);
+    add_fleet(line);
     add_diagnose(line);
     add_modes(line);
     add_drift(line);

@@ -11,6 +11,7 @@
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QScreen>
 #include <QScrollArea>
 #include <QSettings>
 #include <QStatusBar>
@@ -45,6 +46,9 @@ namespace seamwright {
 namespace {
 
 constexpr int kPageWidth = 440;
+constexpr QSize kFirstSize(1440, 900), kSmallestSize(1280, 768);  // logical pixels
+// What the live profile keeps of the window's height, whatever stands below it.
+constexpr double kProfileShare = 0.35;
 constexpr int kLayoutVersion = 2;
 constexpr int kDevices_ms = 250;
 constexpr std::chrono::milliseconds kRobotStale{3000};
@@ -134,7 +138,9 @@ MainWindow::MainWindow(Studio& studio) : studio_(studio), desk_(studio.desk()) {
     // A push that waits for its answer is shown wherever one is.
     connect(&desk_.worker(), &StationWorker::confirm_push, this, [this] { show_step(Step::run); });
 
-    resize(1440, 900);
+    const QSize free = screen()->availableSize();
+    setMinimumSize(kSmallestSize.boundedTo(free));
+    resize(kFirstSize.boundedTo(free));
     resizeDocks({docks_[0], docks_[2]}, {430, 430}, Qt::Vertical);
     default_layout_ = saveState(kLayoutVersion);
     QSettings& s = studio_.settings();
@@ -337,6 +343,7 @@ void MainWindow::refresh_title() {
 
 void MainWindow::resizeEvent(QResizeEvent* event) {
     QMainWindow::resizeEvent(event);
+    views_.profile->setMinimumHeight(static_cast<int>(kProfileShare * height()));
     QTimer::singleShot(0, this, &MainWindow::refresh_next);  // when its button has the new width
 }
 
@@ -588,6 +595,18 @@ void MainWindow::make_report() {
     if (!written) return tell(shown_error(tr("The file was not written."), written.error()));
     desk_.note(EventKind::note, "report", "hand-over report written to " + file.toStdString());
     tell_done(tr("The report is in %1").arg(file));
+}
+
+void MainWindow::show_dialog(const QString& name, const std::function<QDialog*()>& make) {
+    if (!desk_.is_open()) return tell(tr("No project is open."));
+    auto* dialog = findChild<QDialog*>(name);
+    if (!dialog) {
+        dialog = make();
+        dialog->setAttribute(Qt::WA_DeleteOnClose);
+    }
+    dialog->show();
+    dialog->raise();
+    dialog->activateWindow();
 }
 
 void MainWindow::mirror_project() {

@@ -1,6 +1,7 @@
 #pragma once
 // Rail and step page on the left, views as docks on the right, status below; see the pages for what they do.
 
+#include <QDialog>
 #include <QDockWidget>
 #include <QLabel>
 #include <QMainWindow>
@@ -74,6 +75,8 @@ class MainWindow : public QMainWindow {
     void export_project();
     void import_project();
     void make_report();
+    void show_dialog(const QString& name,
+                     const std::function<QDialog*()>& make);  // beside the window, once of a name
     void mirror_project();
     void reteach();
     void show_manual(const QString& page);

@@ -10,6 +10,8 @@
 #include "app/studio/command_palette.h"
 #include "app/studio/main_window.h"
 #include "app/studio/studio.h"
+#include "widgets/dialogs/path_dialog.h"
+#include "widgets/dialogs/program_dialog.h"
 #include "widgets/pages/run_page.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
@@ -67,6 +69,13 @@ void MainWindow::make_file_menu() {
     file->addSeparator();
     file->addAction(action("report", "export", tr("Hand-over report..."), QKeySequence("Ctrl+R"),
                            [this] { make_report(); }));
+    file->addAction(
+        action("corrected_path", "push", tr("Path corrected by a run..."), QKeySequence("Ctrl+P"), [this] {
+            show_dialog("path_dialog", [this] { return new PathDialog(desk_, *views_.scene, this); });
+        }));
+    file->addAction(action("robot_program", "robot", tr("Program for the robot's controller..."), {}, [this] {
+        show_dialog("program_dialog", [this] { return new ProgramDialog(desk_, this); });
+    }));
     file->addAction(
         action("mirror", "regions", tr("Clone for the mirrored part..."), {}, [this] { mirror_project(); }));
     file->addAction(action("reteach", "calibrate", tr("After an exchange of sensor or robot..."), {},

@@ -55,6 +55,31 @@ std::optional<Capability> quantile_capability(const ProcessLimits& limits,
     return c;
 }
 
+Expected<void> check_limits(const ProcessLimits& limits) {
+    for (const auto& limit : {limits.lower, limits.upper})
+        if (limit && !std::isfinite(*limit)) return input_error("a limit is not finite", "statistics");
+    if (limits.lower && limits.upper && !(*limits.lower < *limits.upper))
+        return input_error("the lower limit is not below the upper one", "statistics");
+    return {};
+}
+
+// From n, mean, s, sigma_within and the correlation.
+void say_capability(ProcessSummary& r, const ProcessLimits& limits) {
+    const double n = r.n;
+    r.correlated = r.correlation > 2 / std::sqrt(n);
+    const double c = r.correlated ? r.correlation : 0;
+    const double alike = (1 - c * c) / (1 + c * c);
+    Effective total{n * (1 - c) / (1 + c), (n - 1) * alike}, within = total;
+    constexpr double kMovingRanges = 2 * std::numbers::pi / 3 + std::numbers::sqrt3 - 3;
+    within.degrees = (n - 1) / (2 * kMovingRanges) * alike;
+    const double by = t_quantile(std::max(1.0, total.n - 1), 0.975) * r.s / std::sqrt(total.n);
+    r.mean_limits = {r.mean - by, r.mean + by};
+    r.total = capability(limits, r.mean, r.s, total);
+    r.within = capability(limits, r.mean, r.sigma_within, within);
+}
+
+constexpr double kMeanRange = 1.128;  // d2 of two values, in sigma
+
 }  // namespace
 
 double lag1_correlation(std::span<const double> values) {
@@ -96,10 +121,7 @@ Expected<ProcessSummary> summarise_process(std::span<const double> values, const
     if (values.empty()) return input_error("there are no values", "statistics");
     if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
         return input_error("a value is not finite", "statistics");
-    for (const auto& limit : {limits.lower, limits.upper})
-        if (limit && !std::isfinite(*limit)) return input_error("a limit is not finite", "statistics");
-    if (limits.lower && limits.upper && !(*limits.lower < *limits.upper))
-        return input_error("the lower limit is not below the upper one", "statistics");
+    SEAM_OK(check_limits(limits));
     ProcessSummary r;
     r.n = static_cast<int>(values.size());
     std::vector<double> sorted(values.begin(), values.end());
@@ -111,28 +133,46 @@ Expected<ProcessSummary> summarise_process(std::span<const double> values, const
         r.beyond += (limits.lower && v < *limits.lower) || (limits.upper && v > *limits.upper);
     if (r.n == 1) {
         r.mean = values.front();
-        r.mean_limits = {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+        r.mean_limits = {-kInfinity, kInfinity};
         return r;
     }
     const Moments m = moments(values);
-    const double n = r.n;
     r.mean = m.mean;
     r.s = all_equal(m) ? 0 : m.s;
     for (std::size_t i = 1; i < values.size(); ++i) r.sigma_within += std::abs(values[i] - values[i - 1]);
-    r.sigma_within = r.s > 0 ? r.sigma_within / (n - 1) / 1.128 : 0;
+    r.sigma_within = r.s > 0 ? r.sigma_within / (r.n - 1) / kMeanRange : 0;
     r.correlation = lag1_correlation(values);
-    r.correlated = r.correlation > 2 / std::sqrt(n);
     r.normal_p = anderson_darling_p(values);
-    const double c = r.correlated ? r.correlation : 0;
-    const double alike = (1 - c * c) / (1 + c * c);
-    Effective total{n * (1 - c) / (1 + c), (n - 1) * alike}, within = total;
-    constexpr double kMovingRanges = 2 * std::numbers::pi / 3 + std::numbers::sqrt3 - 3;
-    within.degrees = (n - 1) / (2 * kMovingRanges) * alike;
-    const double by = t_quantile(std::max(1.0, total.n - 1), 0.975) * r.s / std::sqrt(total.n);
-    r.mean_limits = {r.mean - by, r.mean + by};
-    r.total = capability(limits, r.mean, r.s, total);
-    r.within = capability(limits, r.mean, r.sigma_within, within);
+    say_capability(r, limits);
     r.by_quantiles = quantile_capability(limits, sorted);
+    return r;
+}
+
+Expected<ProcessSummary> summarise_sums(const RowSums& sums, const ProcessLimits& limits) {
+    if (sums.values() < 1) return input_error("there are no values", "statistics");
+    if (!sums.own.allFinite() || !sums.pairs.allFinite() || !std::isfinite(sums.ranges))
+        return input_error("a value is not finite", "statistics");
+    SEAM_OK(check_limits(limits));
+    ProcessSummary r;
+    r.n = static_cast<int>(sums.values());
+    r.lowest = sums.lowest;
+    r.highest = sums.highest;
+    r.mean = sums.mean();
+    if (r.n == 1) {
+        r.mean_limits = {-kInfinity, kInfinity};
+        return r;
+    }
+    const Eigen::Vector3d off_mean(-r.mean, 1, 0);
+    const double squares = std::max(0.0, sums.squares(off_mean));
+    // No scatter but the sums' own rounding.
+    const bool equal = sums.lowest == sums.highest || squares <= 1e-15 * sums.own(1, 1);
+    if (!equal) {
+        r.s = std::sqrt(squares / (r.n - 1));
+        if (sums.neighbours() > 0)
+            r.sigma_within = sums.ranges / static_cast<double>(sums.neighbours()) / kMeanRange;
+        if (r.n > 2) r.correlation = sums.products(off_mean) / squares;
+    }
+    say_capability(r, limits);
     return r;
 }
 

@@ -21,6 +21,7 @@
 
 #include "core/acceptance/acceptance.h"
 #include "core/error.h"
+#include "core/statistics/row_sums.h"
 
 namespace seamwright {
 
@@ -60,6 +61,11 @@ struct ProcessSummary {
 
 // Values in the order of time. Error (input): none, not finite, limits that are not finite or out of order.
 Expected<ProcessSummary> summarise_process(std::span<const double> values, const ProcessLimits& limits);
+
+// The same from the sums of a row, or of several rows that have no neighbours in common. What only the values
+// themselves tell is not in it: `beyond`, median, normality and quantiles. Error (input): no value, sums that are
+// not finite, limits as above.
+Expected<ProcessSummary> summarise_sums(const RowSums& sums, const ProcessLimits& limits);
 
 // Of the row's neighbours; 0 with fewer than 3 values or without scatter.
 double lag1_correlation(std::span<const double> values);

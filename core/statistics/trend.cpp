@@ -25,6 +25,18 @@ std::optional<Crossing> crossing_of(const Trend& t, const ProcessLimits& limits)
     return c;
 }
 
+// From n, span, slope, level, residuals' scatter and correlation; `xx` the times' sum of squares about their mean.
+void judge(Trend& t, double xx, const ProcessLimits& limits) {
+    const double n = t.n;
+    const double r = std::clamp(t.correlation, 0.0, 0.99);
+    const double by = t_quantile(n - 2, 0.975) * t.residual_s / std::sqrt(xx) * std::sqrt((1 + r) / (1 - r));
+    t.slope_limits = {t.slope_per_day - by, t.slope_per_day + by};
+    // A scatter that is rounding alone is no slope.
+    t.significant = !t.slope_limits.contains(0) &&
+                    std::abs(t.slope_per_day) * t.span_days > 1e-12 * std::max(1.0, std::abs(t.level));
+    if (t.significant) t.crossing = crossing_of(t, limits);
+}
+
 }  // namespace
 
 Expected<std::optional<Trend>> trend_of(std::span<const double> days, std::span<const double> values,
@@ -62,14 +74,29 @@ Expected<std::optional<Trend>> trend_of(std::span<const double> days, std::span<
     }
     t.residual_s = std::sqrt(squares / (n - 2));
     t.correlation = lag1_correlation(residuals);
-    const double r = std::clamp(t.correlation, 0.0, 0.99);
-    const double by = t_quantile(n - 2, 0.975) * t.residual_s / std::sqrt(xx) * std::sqrt((1 + r) / (1 - r));
-    t.slope_limits = {t.slope_per_day - by, t.slope_per_day + by};
-    // A scatter that is rounding alone is no slope.
-    t.significant = !t.slope_limits.contains(0) &&
-                    std::abs(t.slope_per_day) * t.span_days > 1e-12 * std::max(1.0, std::abs(t.level));
-    if (t.significant) t.crossing = crossing_of(t, limits);
+    judge(t, xx, limits);
     return std::optional(t);
+}
+
+std::optional<Trend> trend_of(const RowSums& sums, const ProcessLimits& limits) {
+    const double span = sums.last.z() - sums.first.z();
+    if (sums.values() < kTrendValues || !(span > 0)) return std::nullopt;
+    Trend t;
+    t.n = static_cast<int>(sums.values());
+    t.span_days = span;
+    const double n = t.n;
+    const double mean_day = sums.own(0, 2) / n;
+    const double xx = sums.squares({-mean_day, 0, 1});
+    if (!(xx > 0)) return std::nullopt;
+    const Eigen::Vector3d off_mean(-sums.mean(), 1, 0), off_day(-mean_day, 0, 1);
+    t.slope_per_day = off_day.dot(sums.own * off_mean) / xx;
+    t.level = sums.mean() + t.slope_per_day * (sums.last.z() - mean_day);
+    const Eigen::Vector3d residual(-(sums.mean() - t.slope_per_day * mean_day), 1, -t.slope_per_day);
+    const double squares = std::max(0.0, sums.squares(residual));
+    t.residual_s = std::sqrt(squares / (n - 2));
+    if (squares > 0) t.correlation = sums.products(residual) / squares;
+    judge(t, xx, limits);
+    return t;
 }
 
 }  // namespace seamwright

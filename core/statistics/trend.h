@@ -43,5 +43,7 @@ struct Trend {
 // Error (input): unequal lengths, not finite, days that go back.
 Expected<std::optional<Trend>> trend_of(std::span<const double> days, std::span<const double> values,
                                         const ProcessLimits& limits);
+// The same from sums whose times are days; of several rows, residuals are followed within each.
+std::optional<Trend> trend_of(const RowSums& sums, const ProcessLimits& limits);
 
 }  // namespace seamwright

@@ -54,6 +54,7 @@ bool CyclicCorrector::at_zero() const {
 }
 
 void CyclicCorrector::raise(Text reason) {
+    if (steering_) steering_->alarmed(reason);
     if (!alarm_) alarm_ = std::move(reason);
     lead_back();
     steady_ = 0;
@@ -427,6 +428,7 @@ bool CyclicCorrector::handle(std::span<const std::byte> datagram, const CyclicAr
         owed_ = owed_ && !wait;
     }
     if (!packet.problem) watch_path(packet, moved_mm);
+    if (steering_ && !packet.problem) steering_->see(last_, phase_, arrival.heard_ns);
     if (unanswered_) owed_ = false;
     clean_ = follows_ && missed == 0 && !packet.problem && suspicion_ == 0;
     if (!owed_) {
@@ -436,10 +438,28 @@ bool CyclicCorrector::handle(std::span<const std::byte> datagram, const CyclicAr
     return true;
 }
 
+// Only on the running path: before, the displacement alone is brought on; at its end what is told stays. In the
+// correction that is kept of a path that is over, and by whom nobody steers any more, nothing changes by this.
+void CyclicCorrector::ask_steering() {
+    const auto leave = [&](const Eigen::Vector3d& offset_mm, const Eigen::Vector3d& rate_mm_s) {
+        ramp_.steer(offset_mm, rate_mm_s);
+        sent_ramp_.steer(offset_mm, rate_mm_s);
+    };
+    if (phase_ == PathPhase::over) return leave(sent_ramp_.steered_mm(), Eigen::Vector3d::Zero());
+    if (phase_ != PathPhase::running) return;
+    if (!steering_) return leave(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
+    PathSteering::Wanted wanted = steering_->wanted(last_, ramp_.steered_mm());
+    if (!wanted.offset_mm.allFinite() || !wanted.rate_mm_s.allFinite())
+        return raise("what steers the correction told a number that is none");
+    if (wanted.alarm) return raise(std::move(*wanted.alarm));
+    leave(wanted.offset_mm, wanted.rate_mm_s);
+}
+
 std::span<const std::byte> CyclicCorrector::answer() {
     if (!owed_) return {};
     owed_ = false;
     settled_ = true;
+    ask_steering();
     sent_ramp_ = ramp_;
     CyclicTold wanted = held_;
     if (pause_) {

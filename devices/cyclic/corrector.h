@@ -31,6 +31,9 @@
 // show within follow_tolerance for follow_ms, a new session or silence under a correction. An alarm is kept
 // until take_alarm().
 //
+// While the path runs a steering (steering.h) may add an offset to the confirmed correction, within the same limits;
+// what it raises is an alarm like the others.
+//
 // No path runs on without its permission: one that goes before the path is over stops the robot. It does so
 // by `released`, which falls with the next answer while the correction is led back, or, where the protocol
 // has none (stops_unanswered), by no answer at all; such a robot keeps its correction until it stands.
@@ -43,19 +46,13 @@
 #include "devices/cyclic/evidence.h"
 #include "devices/cyclic/protocol.h"
 #include "devices/cyclic/statistics.h"
+#include "devices/cyclic/steering.h"
 
 namespace seamwright {
 
-// How far the application's path is that is corrected.
-enum class PathPhase {
-    none,     // no correction confirmed
-    waiting,  // confirmed, the path stands
-    running,
-    over,  // it stood when the session ended, or the program says so
-};
-
 struct CyclicArrival {
     bool gap = false, other_peer = false;
+    std::int64_t heard_ns = 0;  // steady clock; for who steers
 };
 
 class CyclicCorrector {
@@ -69,9 +66,11 @@ class CyclicCorrector {
     std::span<const std::byte> answer();
     void silence();  // nothing came for session_gap_ms
 
-    void set_target(const Pose& displacement);        // in the reference frame
-    void withdraw();                                  // the permission too
-    void await_path();                                // the correction is confirmed: the path may run
+    void set_target(const Pose& displacement);  // in the reference frame
+    void withdraw();                            // the permission too
+    void await_path();                          // the correction is confirmed: the path may run
+    // nullptr: nobody steers any more.
+    void steer(std::shared_ptr<PathSteering> steering) { steering_ = std::move(steering); }
     void forget_path() { phase_ = PathPhase::none; }  // another correction is about to be confirmed
 
     struct State {
@@ -107,6 +106,7 @@ class CyclicCorrector {
     void watch_late(const CyclicPacket& packet, std::uint64_t missed);
     void watch_follow(const std::optional<CyclicTold>& shown);
     void watch_path(const CyclicPacket& packet, double speed_mm_s);
+    void ask_steering();
     void restart_from(const CyclicTold& found);
     void raise(Text reason);
     void lead_back();
@@ -144,6 +144,7 @@ class CyclicCorrector {
     bool run_before_ = false;  // what is under way is no path of this permission
     Eigen::Vector3d path_begin_ = Eigen::Vector3d::Zero();
     int standing_ = 0;  // packets in a row
+    std::shared_ptr<PathSteering> steering_;
     std::optional<Text> alarm_;
     CyclicCounters counters_;
 };

@@ -20,7 +20,7 @@
 // confirm(corrected) waits for a robot that is on its way from measuring to its path (at most confirm_timeout_ms), and
 // returns when the robot has shown the whole correction. permission() is then `given`
 // until its path moves, `running` while it does, which needs this link in every cycle, and `taken` when the
-// path has come to its end. After a new session the identity is asked again, of the measuring link and by the
+// path has come to its end. While it runs, who steers adds an offset (steer(), steering.h). After a new session the identity is asked again, of the measuring link and by the
 // peer's address, before anything is written or confirmed.
 
 #include <initializer_list>
@@ -57,7 +57,7 @@ SettingTable cyclic_settings(std::uint16_t port, double max_rotation_deg);
 Expected<CyclicLinkSettings> parse_cyclic_settings(const nlohmann::json& settings, const SettingTable& table,
                                                    const std::string& driver);
 
-class CyclicLink : public RobotLink {
+class CyclicLink : public RobotLink, public SteeredLink {
   public:
     static Expected<std::unique_ptr<CyclicLink>> open(const CyclicLinkSettings& settings,
                                                       std::unique_ptr<CyclicProtocol> protocol,
@@ -79,6 +79,11 @@ class CyclicLink : public RobotLink {
     bool can_move() const override { return measuring_ && measuring_->can_move(); }
     Expected<void> move_to(const Pose& base_from_flange) override;
     std::vector<Text> take_notices() override;
+    void steer(std::shared_ptr<PathSteering> steering) override { server_->steer(std::move(steering)); }
+    PathPhase path_phase() const override { return server_->state().path; }
+    const Pose& base_from_reference() const override { return settings_.base_from_reference; }
+    const Pose& flange_from_tcp() const override { return settings_.flange_from_tcp; }
+    double cycle_s() const override { return settings_.server.cycle_ms / 1e3; }
 
     const CyclicServer& server() const { return *server_; }
 

@@ -14,7 +14,8 @@ double braking_step(double rest) {
 }
 }  // namespace
 
-CorrectionRamp::CorrectionRamp(RampLimits limits, double cycle_s) : limits_(limits), cycle_s_(cycle_s) {}
+CorrectionRamp::CorrectionRamp(RampLimits limits, double cycle_s)
+    : limits_(limits), cycle_s_(cycle_s), trail_(limits.speed_mm_s, limits.acceleration_mm_s2, cycle_s) {}
 
 CorrectionRamp::State CorrectionRamp::blend(const State& a, const State& b, double s) {
     if (s >= 1) return b;
@@ -35,6 +36,7 @@ void CorrectionRamp::set_target(const Pose& displacement) {
         target_.zero = target_.l.isZero(0) && target_.t.isZero(0);
     }
     pending_ = true;
+    trail_.set_target(Eigen::Vector3d::Zero());
 }
 
 void CorrectionRamp::reset(const CyclicCorrection& held) {
@@ -47,6 +49,7 @@ void CorrectionRamp::reset(const CyclicCorrection& held) {
     s_ = 1;
     step_ = 0;
     pending_ = false;
+    trail_ = OffsetTrail(limits_.speed_mm_s, limits_.acceleration_mm_s2, cycle_s_);
 }
 
 void CorrectionRamp::begin() {
@@ -58,13 +61,20 @@ void CorrectionRamp::begin() {
 }
 
 CyclicCorrection CorrectionRamp::at(const Eigen::Vector3d& position_mm) const {
-    return {now_.l * position_mm + now_.t, now_.turn};
+    return {now_.l * position_mm + now_.t + trail_.offset_mm(), now_.turn};
 }
 
 CyclicCorrection CorrectionRamp::step(const Eigen::Vector3d& position_mm) {
+    const bool led_back = trail_.target_is_zero() && !trail_.zero();
+    trail_.step();
+    if (!led_back) step_displacement(position_mm);
+    return at(position_mm);
+}
+
+void CorrectionRamp::step_displacement(const Eigen::Vector3d& position_mm) {
     if (s_ >= 1 && step_ > 0) {
         step_ = 0;  // the cycle in which the last step's speed ends
-        return at(position_mm);
+        return;
     }
     if (pending_ && step_ == 0) begin();
     if (s_ < 1) {
@@ -88,14 +98,13 @@ CyclicCorrection CorrectionRamp::step(const Eigen::Vector3d& position_mm) {
         if (1 - s_ <= 1e-13) s_ = 1;
         now_ = blend(from_, to_, s_);
     }
-    return at(position_mm);
 }
 
 bool CorrectionRamp::arrived() const {
-    return !pending_ && s_ >= 1;
+    return !pending_ && s_ >= 1 && trail_.arrived();
 }
 bool CorrectionRamp::zero() const {
-    return now_.zero && step_ == 0 && (!pending_ || target_.zero);
+    return now_.zero && step_ == 0 && (!pending_ || target_.zero) && trail_.zero();
 }
 
 }  // namespace seamwright

@@ -13,10 +13,14 @@
 // approximated). While the path runs, L(s) dp of the path's own motion is added; that part is the displaced
 // path, not the ramp. A new end in the middle brakes on the old line first. A ramp is a value: who does not
 // know yet whether the robot took a step keeps the one before it.
+//
+// Who steers (steering.h) adds an offset on top, which follows its target within the same limits (trail.h). A
+// steered offset that is led back is at zero before B begins to go: their speeds never add.
 
 #include <Eigen/Core>
 
 #include "core/geometry/pose.h"
+#include "devices/cyclic/trail.h"
 
 namespace seamwright {
 
@@ -38,13 +42,20 @@ class CorrectionRamp {
     // Standing at this correction wherever the path is; what was wanted is forgotten. Nothing: at zero, the
     // robot has dropped its correction.
     void reset(const CyclicCorrection& held = {});
-    void stand() { step_ = 0; }  // the robot stood for a cycle: its speed begins anew from zero
+    void steer(const Eigen::Vector3d& offset_mm, const Eigen::Vector3d& rate_mm_s) {
+        trail_.set_target(offset_mm, rate_mm_s);
+    }
+    const Eigen::Vector3d& steered_mm() const { return trail_.offset_mm(); }
+    void stand() {
+        step_ = 0;
+        trail_.stand();
+    }  // the robot stood for a cycle: its speed begins anew from zero
     // One cycle on; the correction for the programmed position.
     CyclicCorrection step(const Eigen::Vector3d& position_mm);
     CyclicCorrection at(const Eigen::Vector3d& position_mm) const;  // as it is, without a step
     bool arrived() const;                                           // at the target, standing
     bool zero() const;                                              // no correction, standing
-    bool target_is_zero() const { return target_.zero; }
+    bool target_is_zero() const { return target_.zero && trail_.target_is_zero(); }
 
   private:
     struct State {
@@ -54,10 +65,12 @@ class CorrectionRamp {
     };
     static State blend(const State& a, const State& b, double s);
     void begin();
+    void step_displacement(const Eigen::Vector3d& position_mm);
 
     RampLimits limits_;
     double cycle_s_;
     State from_, to_, now_, target_;
+    OffsetTrail trail_;
     double s_ = 1, step_ = 0;  // step_: of s in the last cycle
     bool pending_ = false;     // target_ is another end than to_
 };

@@ -101,7 +101,8 @@ bool CyclicServer::book(std::span<const std::byte> datagram, const Endpoint& fro
         silent_ = true;
         corrector_.silence();
     }
-    if (!corrector_.handle(datagram, {.gap = gap, .other_peer = other})) return false;
+    if (!corrector_.handle(datagram, {gap, other, std::chrono::nanoseconds(now.time_since_epoch()).count()}))
+        return false;
     if (other && takeovers_.size() < kMostTakeovers)
         takeovers_.push_back(
             Text("the robot at {} fell silent, and {} took its place", text(*robot_), text(from)));
@@ -129,6 +130,11 @@ void CyclicServer::await_path() {
 void CyclicServer::forget_path() {
     const std::lock_guard lock(mutex_);
     corrector_.forget_path();
+}
+
+void CyclicServer::steer(std::shared_ptr<PathSteering> steering) {
+    const std::lock_guard lock(mutex_);
+    corrector_.steer(std::move(steering));
 }
 
 CyclicServer::State CyclicServer::state() const {

@@ -41,6 +41,7 @@ class CyclicServer {
     void withdraw();
     void await_path();
     void forget_path();
+    void steer(std::shared_ptr<PathSteering> steering);
     std::optional<Text> alarm() const;
     std::optional<Text> take_alarm();
     CyclicCounters counters() const;

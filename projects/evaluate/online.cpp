@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
+#include "core/correction/ahead/delay_line.h"
 #include "core/correction/path/path_blend.h"
 #include "core/features/kinds/feature_registry.h"
 #include "core/profile/filter.h"
@@ -76,64 +78,11 @@ Eigen::Vector2d error_at(const Reference& exact, const Part& part, const Eigen::
     return {off.dot(across), off.dot(along.normalized().cross(across).normalized())};
 }
 
-// Follows a moving target within speed and acceleration; `drift` is the target's own velocity.
-class Follower {
-  public:
-    Follower(const RampLimits& limits, double cycle_s) : limits_(limits), cycle_s_(cycle_s) {}
-    const Eigen::Vector2d& step(const Eigen::Vector2d& target, const Eigen::Vector2d& drift) {
-        const Eigen::Vector2d rest = target - offset_;
-        const double distance = rest.norm(), a = limits_.acceleration_mm_s2;
-        Eigen::Vector2d wanted = drift;
-        if (distance > 0)
-            wanted += rest / distance * std::min(std::sqrt(a * distance), 0.25 * distance / cycle_s_);
-        if (wanted.norm() > limits_.speed_mm_s) wanted *= limits_.speed_mm_s / wanted.norm();
-        Eigen::Vector2d change = wanted - velocity_;
-        if (change.norm() > a * cycle_s_) change *= a * cycle_s_ / change.norm();
-        velocity_ += change;
-        offset_ += velocity_ * cycle_s_;
-        return offset_;
-    }
-
-  private:
-    RampLimits limits_;
-    double cycle_s_;
-    Eigen::Vector2d offset_ = Eigen::Vector2d::Zero(), velocity_ = Eigen::Vector2d::Zero();
-};
-
+// Measured, and known from then on.
 struct Measure {
-    double arc_mm, ready_s;
-    Eigen::Vector2d deviation;
+    double ready_s;
+    AheadMeasure what;
 };
-
-// What is known at `now_s` of the deviation at `arc_mm`. `first` moves on past what is out of use.
-Eigen::Vector2d known(const std::vector<Measure>& measures, std::size_t& first, double arc_mm, double now_s,
-                      double smooth_mm) {
-    Eigen::Vector2d sum = Eigen::Vector2d::Zero(), newest = sum;
-    double weight = 0;
-    while (first < measures.size() && measures[first].arc_mm < arc_mm - 3 * smooth_mm) ++first;
-    // A line through what lies about the place: a mean alone would lean to the side that is known.
-    double mean_arc = 0;
-    std::vector<const Measure*> about;
-    for (std::size_t i = first > 0 ? first - 1 : 0; i < measures.size() && measures[i].ready_s <= now_s;
-         ++i) {
-        newest = measures[i].deviation;
-        if (std::abs(measures[i].arc_mm - arc_mm) > smooth_mm) continue;
-        about.push_back(&measures[i]);
-        sum += measures[i].deviation;
-        mean_arc += measures[i].arc_mm;
-        weight += 1;
-    }
-    if (weight == 0) return newest;
-    mean_arc /= weight;
-    const Eigen::Vector2d mean = sum / weight;
-    Eigen::Vector2d slope = Eigen::Vector2d::Zero();
-    double spread = 0;
-    for (const Measure* m : about) {
-        slope += (m->arc_mm - mean_arc) * (m->deviation - mean);
-        spread += (m->arc_mm - mean_arc) * (m->arc_mm - mean_arc);
-    }
-    return spread > 0 && weight > 2 ? Eigen::Vector2d(mean + slope / spread * (arc_mm - mean_arc)) : mean;
-}
 
 struct World {
     Cell cell;
@@ -216,10 +165,13 @@ PartErrors run_online(const World& w, const OnlineWay& way, const Part& part, co
     Profile profile;
     PartErrors out;
     const double cycle = way.cycle_ms / 1000, lag = way.lag_ms / 1000, period = 1 / way.rate_hz;
-    Follower follower(way.limits, cycle);
+    OffsetTrail trail(way.limits.speed_mm_s, way.limits.acceleration_mm_s2, cycle);
     Eigen::Vector2d actual = Eigen::Vector2d::Zero();
-    std::vector<Measure> measures;
-    std::size_t first = 0;
+    DelayLineOptions smoothing;
+    smoothing.shortest_mm = smoothing.longest_mm = way.smooth_mm;
+    DelayLine line(smoothing);
+    std::deque<Measure> coming;
+    const Eigen::Matrix2d of_measure = w.point_sigma_mm * w.point_sigma_mm * Eigen::Matrix2d::Identity();
     double next_exposure = 0, next_judged = 0, cycles = 0;
     const double end = door_edge_length_mm();
     for (double t = 0;; t += cycle) {
@@ -237,27 +189,29 @@ PartErrors run_online(const World& w, const OnlineWay& way, const Part& part, co
                 measure_at(w, mesh, *finder, part.truth.inverse() * real, s.noise_mm, random, profile);
             if (p) {
                 const Eigen::Vector2d found = *p + actual - w.measured.at(at);
-                measures.push_back({at, next_exposure + way.delay_ms / 1000, found});
+                coming.push_back({next_exposure + way.delay_ms / 1000, {at, found, of_measure}});
             }
             next_exposure += period;
         }
         // Where the tool will be when what is sent now has been followed.
         const double acts = arc + way.speed_mm_s * (cycle + lag);
-        const Eigen::Vector2d target = known(measures, first, acts, t, way.smooth_mm);
-        std::size_t same = first;
-        const double ahead = way.speed_mm_s * cycle;
-        const Eigen::Vector2d drift =
-            (known(measures, same, acts + ahead, t, way.smooth_mm) - target) / cycle;
+        for (; !coming.empty() && coming.front().ready_s <= t; coming.pop_front())
+            (void)line.add(coming.front().what);
+        const AheadOffset known = line.at(acts);
+        const Eigen::Vector2d& target = known.off_mm;
+        const Eigen::Vector2d rate = way.speed_mm_s * known.slope;
         if (target.norm() > way.limit_mm) {
             out.alarm = true;
             return out;
         }
-        const Eigen::Vector2d sent = follower.step(target, drift);
+        trail.set_target({target.x(), target.y(), 0}, {rate.x(), rate.y(), 0});
+        const Eigen::Vector2d sent = trail.step().head<2>();
         actual += (sent - actual) * (1 - std::exp(-cycle / lag));
         const double now = arc + way.speed_mm_s * cycle;
         if (now >= 0) {
             cycles += 1;
             out.behind += (target - sent).norm() > kBehindMm;
+            out.variance += known.covariance_mm2.trace() / 2;
         }
         if (now < 0 || now < next_judged || now > end) continue;
         next_judged += kPathStepMm;
@@ -269,10 +223,8 @@ PartErrors run_online(const World& w, const OnlineWay& way, const Part& part, co
         out.error.push_back(error_at(w.exact, part, tool, now));
     }
     out.behind /= std::max(1.0, cycles);
-    const double averaged = std::max(1.0, 2 * way.smooth_mm / (way.speed_mm_s * period));
-    const double of_measure = w.point_sigma_mm * w.point_sigma_mm;
-    out.variance =
-        of_measure / averaged + of_measure / kReferenceRepeats + s.repeatability_mm * s.repeatability_mm;
+    out.variance = out.variance / std::max(1.0, cycles) + of_measure(0, 0) / kReferenceRepeats +
+                   s.repeatability_mm * s.repeatability_mm;
     return out;
 }
 

@@ -4,9 +4,9 @@
 // The robot runs once round the door's contour at constant speed. A sensor rides `look_ahead_mm` before the
 // tool and measures the contour `rate_hz` times a second against a pass over the taught part; what it
 // measured is there `delay_ms` after the exposure. Every cycle (RSI, EGM) the tool takes the correction,
-// across the contour and in height, of the place where it will be when the correction acts: the mean of what
-// is known within `smooth_mm` of it, else the newest measure. The correction keeps the limits of
-// devices/cyclic/ramp.h, and the robot follows it with a lag of first order, whose time constant is reckoned
+// across the contour and in height, of the place where it will be when the correction acts, from the delay line of
+// core/correction/ahead/delay_line.h with a half width of `smooth_mm`. The correction keeps the limits of
+// devices/cyclic/trail.h, and the robot follows it with a lag of first order, whose time constant is reckoned
 // with. It is limited to `limit_mm`; a part that asks for more raises an alarm and does not count.
 //
 // Offline: the 12 spots measured once (experiment 3), four regions, the path corrected point by point

@@ -37,6 +37,7 @@
 
 #include "core/text.h"
 #include "projects/file/chain/chain.h"
+#include "projects/file/outbox/outbox.h"
 #include "projects/file/run_values.h"
 #include "projects/model/evidence.h"
 #include "projects/model/project.h"
@@ -174,6 +175,15 @@ class ProjectFile {
     // Newest last; run 0 = all.
     Expected<std::vector<EventRecord>> events(std::int64_t run = 0) const;
     Expected<void> delete_run(std::int64_t number);
+
+    // --- outbox (outbox/outbox.h): finished runs that no fleet has taken yet, oldest first
+    Expected<std::int64_t> queued() const;
+    // At most so many behind `after_run`.
+    Expected<std::vector<QueuedRun>> queued_runs(std::int64_t after_run, std::int64_t most) const;
+    // What is to be published of it: the run itself may be deleted then. Nothing where it has changed meanwhile.
+    Expected<void> keep_message(const QueuedRun& run, const std::string& message);
+    // They are in the database; one that has changed meanwhile stays queued.
+    Expected<void> published(std::span<const QueuedRun> runs);
 
     // What was proven, with the project it was proven with; kept when its runs are deleted. Returns its id.
     Expected<std::int64_t> append_evidence(const Evidence& evidence, const Project& setup);

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "devices/capture/profile_blob.h"
+#include "projects/file/outbox/outbox.h"
 #include "projects/file/project_file_detail.h"
 #include "projects/file/row_checksum.h"
 #include "projects/file/schema.h"
@@ -308,6 +309,7 @@ Expected<std::int64_t> ProjectFile::append_run(const RunRecord& run, const Proje
     if (!number) return number;
     SEAM_OK(insert_rest(impl_->db, impl_->name(), run, *number, {}));
     SEAM_OK(chain_run(*number));
+    SEAM_OK(queue_run(impl_->db, *number));
     SEAM_OK(transaction.commit());
     return number;
 }
@@ -357,6 +359,7 @@ Expected<void> ProjectFile::finish_run(const RunRecord& run, const StoredMeasure
     SEAM_OK(seal_row(impl_->db, "runs", "number", run.number));
     SEAM_OK(insert_rest(impl_->db, impl_->name(), run, run.number, stored));
     SEAM_OK(chain_run(run.number));
+    SEAM_OK(queue_run(impl_->db, run.number));
     return transaction.commit();
 }
 
@@ -384,6 +387,7 @@ Expected<void> ProjectFile::update_run(const RunRecord& run) {
     SEAM_OK(insert_regions(db, run, run.number));
     SEAM_OK(insert_panel(db, run, run.number));
     SEAM_OK(chain_run(run.number));
+    SEAM_OK(queue_run(db, run.number));
     return transaction.commit();
 }
 
@@ -650,6 +654,7 @@ Expected<void> ProjectFile::delete_run(std::int64_t number) {
     SEAM_OK(s.run());
     if (sqlite3_total_changes(impl_->db.handle()) == before) return {};
     SEAM_OK(append_chain(impl_->db, impl_->name(), "run", fmt::format_int(number).c_str(), {}));
+    SEAM_OK(forget_queued(impl_->db, number));
     return transaction.commit();
 }
 

@@ -9,7 +9,7 @@
 namespace seamwright {
 namespace {
 
-constexpr std::array<ChecksummedTable, 25> kTables{{
+constexpr std::array<ChecksummedTable, 26> kTables{{
     {"project", "name", "id, name, created_utc"},
     {"requirements", "id", "id, body"},
     {"part", "id", "id, body, mesh"},
@@ -35,6 +35,7 @@ constexpr std::array<ChecksummedTable, 25> kTables{{
     {"run_panels", "run", "run, job_id, gate_passed, body"},
     {"events", "id", "id, utc, run, kind, subject, text"},
     {"evidence", "id", "id, utc, kind, subject, setup, body"},
+    {"outbox", "run", "run, revision, message", 13},
 }};
 
 const ChecksummedTable& table_of(std::string_view name) {

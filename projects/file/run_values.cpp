@@ -16,19 +16,24 @@ constexpr const char* kWhichRuns =
     "WHERE "
     "run_types.run = number AND type_id = ?3))";
 
+constexpr const char* kThisRun = "number = ?5";
+
 class ValuesReader {
   public:
     ValuesReader(Database& db, const RunValuesWanted& wanted) : db_(db), wanted_(wanted) {}
 
     Expected<std::vector<RunValues>> read() {
-        for (const char* table : {"runs", "run_regions", "run_panels", "run_types"})
-            SEAM_OK(check_rows(db_, table));
+        for (const char* table : {"runs", "run_regions", "run_panels", "run_types"}) {
+            const char* key = std::string_view(table) == "runs" ? "number" : "run";
+            SEAM_OK(check_rows(db_, table, wanted_.run ? key : nullptr, wanted_.run));
+        }
         const auto regions = [&](Statement& row) { return region(row); };
         const auto panels = [&](Statement& row) { return panel(row); };
         const auto spots = [&](Statement& row) { return spot(row); };
         for (Expected<void> done :
              {query("SELECT number, part_id, started_utc, finished_utc, push, status, setup, "
-                    "ifnull((SELECT type_id FROM run_types WHERE run = number), '') FROM runs WHERE {} ORDER "
+                    "ifnull((SELECT type_id FROM run_types WHERE run = number), ''), message FROM runs WHERE "
+                    "{} ORDER "
                     "BY number",
                     [&](Statement& row) { return run(row); }),
               query("SELECT run, region_id, run_regions.gate_passed, "
@@ -37,7 +42,11 @@ class ValuesReader {
                     "CASE run_regions.gate_passed WHEN 1 THEN '[]' "
                     "ELSE ifnull(json_extract(body, '$.refusals'), '[]') END, "
                     "CASE ?4 WHEN 1 THEN ifnull(json_extract(body, '$.correction.covariance_random'), "
-                    "ifnull(json_extract(body, '$.correction.covariance'), '')) ELSE '' END "
+                    "ifnull(json_extract(body, '$.correction.covariance'), '')) ELSE '' END, "
+                    "CASE ?6 WHEN 1 THEN ifnull(json_extract(body, '$.correction.sigma_xyz_mm'), '') ELSE '' "
+                    "END, "
+                    "CASE ?6 WHEN 1 THEN ifnull(json_extract(body, '$.correction.sigma_abc_deg'), '') ELSE "
+                    "'' END "
                     "FROM run_regions JOIN runs ON run = number WHERE {} ORDER BY run, position",
                     regions),
               query("SELECT run, job_id, run_panels.gate_passed, "
@@ -55,11 +64,13 @@ class ValuesReader {
   private:
     template <class Read>
     Expected<void> query(const char* sql, const Read& read) {
-        SEAM_TRY(auto s, db_.prepare(fmt::format(fmt::runtime(sql), kWhichRuns)));
+        SEAM_TRY(auto s, db_.prepare(fmt::format(fmt::runtime(sql), wanted_.run ? kThisRun : kWhichRuns)));
         s.bind(1, wanted_.since_utc);
         s.bind(2, wanted_.until_utc);
         s.bind(3, wanted_.type_id);
         s.bind(4, std::int64_t{wanted_.covariances});  // of the one statement that asks for it
+        s.bind(5, wanted_.run);
+        s.bind(6, std::int64_t{wanted_.sigmas});
         return for_each_row(s, read);
     }
 
@@ -80,6 +91,7 @@ class ValuesReader {
         r.status = *status;
         r.setup = row.integer(6);
         r.type_id = row.text(7);
+        r.message = text_from_stored(row.text(8));
         at_.emplace(r.number, runs_.size());
         runs_.push_back(std::move(r));
         return {};
@@ -101,6 +113,14 @@ class ValuesReader {
             out.push_back(std::move(*text));
         }
         return out;
+    }
+
+    static bool three(const std::string& stored, double* to) {
+        const auto numbers = parse_json(stored, "sigma");
+        if (!numbers) return false;
+        const auto read = as_numbers(*numbers, 3, "sigma");
+        if (read) std::copy(read->begin(), read->end(), to);
+        return read.has_value();
     }
 
     Expected<void> region(Statement& row) {
@@ -130,6 +150,10 @@ class ValuesReader {
                                     : Expected<std::vector<double>>(tl::unexpected(numbers.error()));
                 if (!read) return wrong(of->number);
                 r.covariance = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(read->data());
+            }
+            if (const std::string xyz = row.text(7), abc = row.text(8); !xyz.empty() && !abc.empty()) {
+                r.sigma.emplace();
+                if (!three(xyz, r.sigma->data()) || !three(abc, r.sigma->data() + 3)) r.sigma.reset();
             }
         }
         of->regions.push_back(std::move(r));

@@ -2,6 +2,7 @@
 // What many runs left behind, in numbers: read by queries from the file's rows, without loading runs, captures or
 // images: ten times as fast (tests/bench/bench_statistics.cpp).
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,6 +19,8 @@ struct RunValuesWanted {
     std::string since_utc, until_utc;
     std::string type_id = {};  // of this part type alone; empty: all
     bool covariances = false;  // RegionValue::covariance too
+    bool sigmas = false;       // RegionValue::sigma too
+    std::int64_t run = 0;      // this one alone, whatever else is wanted; 0: all
 };
 
 struct RegionValue {
@@ -28,6 +31,7 @@ struct RegionValue {
     Pose workobject_from_movedworkobject = Pose::Identity();  // of status ok and over_limit, else identity
     std::vector<Text> refusals;                               // empty when passed
     Matrix6 covariance = Matrix6::Zero();                     // of one run's noise, where it was wanted
+    std::optional<std::array<double, 6>> sigma;               // of X Y Z (mm), A B C (degree), where wanted
 };
 struct PlaceValue {
     std::string place_id;
@@ -45,6 +49,7 @@ struct RunValues {
     std::string type_id;
     bool push = false;
     RunStatus status = RunStatus::ok;
+    Text message;
     std::int64_t setup = 0;
     std::vector<RegionValue> regions;
     std::optional<PanelValue> panel;

@@ -302,7 +302,20 @@ CREATE TABLE fixture (
 )sql";
 constexpr std::int32_t kChained = 12;  // the first version with a chain
 
-constexpr std::array<Migration, 12> kMigrations{{{1, kVersion1},
+// Finished runs that a fleet's database has not taken yet (outbox/outbox.h): all that an older file holds.
+constexpr const char* kVersion13 = R"sql(
+CREATE TABLE outbox (
+    run INTEGER PRIMARY KEY NOT NULL,
+    revision INTEGER NOT NULL,
+    message TEXT NOT NULL,
+    checksum INTEGER NOT NULL
+) STRICT;
+INSERT INTO outbox SELECT number, ifnull((SELECT max(chain.number) FROM chain WHERE kind = 'run' AND
+    subject = CAST(runs.number AS TEXT)), 0), '', 0 FROM runs WHERE finished_utc <> '';
+UPDATE outbox SET checksum = row_checksum(run, revision, message);
+)sql";
+
+constexpr std::array<Migration, 13> kMigrations{{{1, kVersion1},
                                                  {2, kVersion2},
                                                  {3, kVersion3},
                                                  {4, kVersion4},
@@ -313,7 +326,8 @@ constexpr std::array<Migration, 12> kMigrations{{{1, kVersion1},
                                                  {9, kVersion9},
                                                  {10, kVersion10},
                                                  {11, kVersion11},
-                                                 {12, kVersion12}}};
+                                                 {12, kVersion12},
+                                                 {13, kVersion13}}};
 
 // The tables of a fresh file of that version; made once for each version, since making them costs more than
 // checking a file does.

@@ -6,15 +6,14 @@
 #include <cmath>
 #include <optional>
 
+#include "core/correction/ahead/pose_history.h"
 #include "projects/measure/measure.h"
 #include "projects/panel/pass_sections.h"
 #include "projects/station/acquire.h"
 
 namespace seamwright {
 
-using passing::pose_at;
 using passing::Sections;
-using passing::TimedPose;
 
 namespace {
 
@@ -94,24 +93,27 @@ Expected<GapPass> gap_pass(const Project& project, CaptureReader& capture, const
                            capture.path().string(), "name one that it holds");
     SEAM_TRY(auto sections, Sections::make(project, source->name));
 
-    std::vector<TimedPose> poses;
+    std::optional<PoseHistory> poses;
     const CaptureSource* robot = capture.find(options.robot_id, SourceKind::robot);
     if (!robot && !options.robot_id.empty())
         return input_error(Text("it holds no robot \"{}\"", options.robot_id), capture.path().string());
     if (robot) {
         SEAM_TRY(auto events, capture.events(robot->id));
+        std::stable_sort(events.begin(), events.end(), [](const CaptureEvent& a, const CaptureEvent& b) {
+            return a.host_time_ns < b.host_time_ns;
+        });
+        poses.emplace(events.size());
         for (const CaptureEvent& e : events)
-            if (e.base_from_flange) poses.push_back({e.host_time_ns, *e.base_from_flange});
-        std::stable_sort(poses.begin(), poses.end(),
-                         [](const TimedPose& a, const TimedPose& b) { return a.time_ns < b.time_ns; });
+            if (e.base_from_flange) poses->add(e.host_time_ns, *e.base_from_flange);
     }
     GapPass& pass = sections.pass;
     pass.frames = capture.frames(source->id);
     for (std::uint64_t k = 0; k < pass.frames; ++k) {
         SEAM_TRY(auto frame, capture.frame(source->id, k));
         const Capture& c = *frame;
-        const auto flange =
-            c.base_from_flange ? c.base_from_flange : pose_at(poses, c.host_time_ns, options.most_between_s);
+        const auto flange = c.base_from_flange ? c.base_from_flange
+                            : poses            ? poses->at(c.host_time_ns, options.most_between_s)
+                                               : std::nullopt;
         if (flange)
             sections.add(c, *flange);
         else

@@ -2,7 +2,6 @@
 // What every way to make a pass of gap_check.h has in common: frames and poses become sections.
 
 #include <algorithm>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,24 +11,6 @@
 #include "projects/station/acquire.h"
 
 namespace seamwright::passing {
-
-struct TimedPose {
-    std::int64_t time_ns;
-    Pose base_from_flange;
-};
-
-inline std::optional<Pose> pose_at(const std::vector<TimedPose>& poses, std::int64_t time_ns, double most_s) {
-    const auto after = std::lower_bound(poses.begin(), poses.end(), time_ns,
-                                        [](const TimedPose& p, std::int64_t t) { return p.time_ns < t; });
-    if (after == poses.end()) return std::nullopt;
-    if (after->time_ns == time_ns) return after->base_from_flange;
-    if (after == poses.begin()) return std::nullopt;
-    const auto before = std::prev(after);
-    const double between = 1e-9 * static_cast<double>(after->time_ns - before->time_ns);
-    if (between > most_s) return std::nullopt;
-    return interpolate(before->base_from_flange, after->base_from_flange,
-                       1e-9 * static_cast<double>(time_ns - before->time_ns) / between);
-}
 
 // One sensor's frames become sections.
 class Sections {

@@ -194,6 +194,13 @@ std::string block_html(const Block& b) {
 
 }  // namespace
 
+std::string Page::html_again_after(int seconds) const {
+    std::string text = html();
+    if (const auto at = text.find("<head>"); at != std::string::npos)
+        text.insert(at + 6, "<meta http-equiv=\"refresh\" content=\"" + std::to_string(seconds) + "\">");
+    return text;
+}
+
 std::string Page::html() const {
     std::string body;
     for (const Block& b : blocks_) body += block_html(b);

@@ -50,6 +50,8 @@ class Page {
     const std::string& language() const { return language_; }
     std::span<const Block> blocks() const { return blocks_; }
     std::string html() const;
+    // The same, asked for again by the browser: no script runs here.
+    std::string html_again_after(int seconds) const;
     // Headings, verdicts, sentences and tables, without the plots.
     std::string text() const;
 

@@ -14,36 +14,6 @@
 namespace seamwright {
 namespace {
 
-enum class Purpose { production, proof, study };
-
-// What the runs of one file were made for.
-class Purposes {
-  public:
-    explicit Purposes(const std::vector<Evidence>& evidence)
-        : proofs_(proof_runs(evidence)), rehung_(rehung_parts(evidence)) {
-        for (const Evidence& e : evidence)
-            if (const auto* plan = std::get_if<StudyPlan>(&e.what)) plans_.push_back(*plan);
-    }
-    Purpose of(const RunValues& run) const {
-        if (proofs_.contains(run.number) || run.part_id.starts_with(kZeroShiftPrefix) ||
-            run.part_id.starts_with(kKnownShiftPrefix))
-            return Purpose::proof;
-        // A study only measures: what was pushed is a part that went on.
-        if (run.push) return Purpose::production;
-        if (rehung_.contains(run.part_id)) return Purpose::study;
-        for (const StudyPlan& plan : plans_)
-            if (run.number > plan.after_run &&
-                std::find(plan.parts.begin(), plan.parts.end(), run.part_id) != plan.parts.end())
-                return Purpose::study;
-        return Purpose::production;
-    }
-
-  private:
-    std::set<std::int64_t> proofs_;
-    std::map<std::string, RehungPart> rehung_;
-    std::vector<StudyPlan> plans_;
-};
-
 Expected<void> add_file(Production& p, const std::filesystem::path& path, const RunValuesWanted& wanted) {
     SEAM_TRY(auto file, ProjectFile::open(path, FileAccess::read_only));
     SEAM_TRY(auto project, file.load());
@@ -51,15 +21,15 @@ Expected<void> add_file(Production& p, const std::filesystem::path& path, const 
     RunValuesWanted values = wanted;
     values.covariances |= project.fixture.has_value();  // to say what has moved
     SEAM_TRY(auto runs, file.run_values(values));
-    const Purposes purposes(evidence);
+    const RunPurposes purposes(evidence);
     std::set<std::int64_t> setups;
     for (RunValues& run : runs) {
         const auto started = utc_milliseconds(run.started_utc);
         if (!started)
             return file_error("a run has no valid time", Text("{}: run {}", path.string(), run.number));
-        const Purpose purpose = purposes.of(run);
-        if (purpose != Purpose::production) {
-            ++(purpose == Purpose::proof ? p.proofs : p.studies);
+        const RunPurpose purpose = purposes.of(run);
+        if (purpose != RunPurpose::production) {
+            ++(purpose == RunPurpose::proof ? p.proofs : p.studies);
             continue;
         }
         if (run.status == RunStatus::cancelled || run.status == RunStatus::interrupted) {
@@ -70,11 +40,38 @@ Expected<void> add_file(Production& p, const std::filesystem::path& path, const 
         p.runs.push_back({p.files.size(), static_cast<double>(*started) / 86400e3, std::move(run)});
     }
     p.setups += setups.size();
-    p.files.push_back({path, std::move(project)});
+    auto points = path_points_of(project);
+    p.files.push_back({path, std::move(project), std::move(points)});
     return {};
 }
 
 }  // namespace
+
+RunPurposes::RunPurposes(const std::vector<Evidence>& evidence) : proofs_(proof_runs(evidence)) {
+    for (const auto& [part, rehung] : rehung_parts(evidence)) rehung_.insert(part);
+    for (const Evidence& e : evidence)
+        if (const auto* plan = std::get_if<StudyPlan>(&e.what)) plans_.push_back(*plan);
+}
+
+RunPurpose RunPurposes::of(const RunValues& run) const {
+    if (proofs_.contains(run.number) || run.part_id.starts_with(kZeroShiftPrefix) ||
+        run.part_id.starts_with(kKnownShiftPrefix))
+        return RunPurpose::proof;
+    // A study only measures: what was pushed is a part that went on.
+    if (run.push) return RunPurpose::production;
+    if (rehung_.contains(run.part_id)) return RunPurpose::study;
+    for (const StudyPlan& plan : plans_)
+        if (run.number > plan.after_run &&
+            std::find(plan.parts.begin(), plan.parts.end(), run.part_id) != plan.parts.end())
+            return RunPurpose::study;
+    return RunPurpose::production;
+}
+
+std::map<std::string, std::vector<PathDirection>> path_points_of(const Project& project) {
+    std::map<std::string, std::vector<PathDirection>> points;
+    for (const Region& region : project.regions) points[region.id] = path_directions(project, region);
+    return points;
+}
 
 Expected<Production> production_of(const std::vector<std::filesystem::path>& files,
                                    const RunValuesWanted& wanted) {

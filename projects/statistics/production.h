@@ -5,10 +5,12 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "projects/file/project_file.h"
+#include "projects/proof/path_direction.h"
 
 namespace seamwright {
 
@@ -18,8 +20,9 @@ struct ProductionRun {
     RunValues values;
 };
 struct ProductionFile {
-    std::filesystem::path path;
-    Project project;  // as it stands
+    std::filesystem::path path;                                          // of a fleet: the station's name
+    Project project;                                                     // as it stands
+    std::map<std::string, std::vector<PathDirection>> path_points = {};  // by region
 };
 struct Production {
     std::vector<ProductionFile> files;
@@ -27,6 +30,22 @@ struct Production {
     int proofs = 0, studies = 0, unfinished = 0;
     std::size_t setups = 0;  // different ones, over all files
 };
+
+enum class RunPurpose { production, proof, study };
+
+// What the runs of one file were made for, by its evidence.
+class RunPurposes {
+  public:
+    explicit RunPurposes(const std::vector<Evidence>& evidence);
+    RunPurpose of(const RunValues& run) const;
+
+  private:
+    std::set<std::int64_t> proofs_;
+    std::set<std::string> rehung_;
+    std::vector<StudyPlan> plans_;
+};
+
+std::map<std::string, std::vector<PathDirection>> path_points_of(const Project& project);
 
 // Error (file): one that cannot be read; (input): the same file twice.
 Expected<Production> production_of(const std::vector<std::filesystem::path>& files,

@@ -24,24 +24,11 @@ bool only_signs(const std::string& pattern) {
     return true;
 }
 
-// "{}: {}" says nothing itself; what it joins does. Words of somebody else are their own pattern.
-const Text& telling(const Text& text) {
-    if (!only_signs(text.key())) return text;
-    for (auto argument = text.arguments().rbegin(); argument != text.arguments().rend(); ++argument)
-        if (const Text* inner = std::get_if<Text>(&*argument)) return telling(*inner);
-    return text;
-}
-
-std::string pattern_of(const Text& text) {
-    const Text& t = telling(text);
-    return only_signs(t.key()) ? t.english().substr(0, kLongestSaid) : t.key();
-}
-
 void count_refusal(std::vector<RefusalReason>& reasons, const Text& text, const std::string& utc) {
-    std::string pattern = pattern_of(text);
+    std::string pattern = refusal_pattern(text);
     auto at = std::find_if(reasons.begin(), reasons.end(),
                            [&](const RefusalReason& r) { return r.pattern == pattern; });
-    if (at == reasons.end()) at = reasons.insert(at, {std::move(pattern), telling(text), 0, {}});
+    if (at == reasons.end()) at = reasons.insert(at, {std::move(pattern), telling_refusal(text), 0, {}});
     ++at->count;
     at->last_utc = utc;
 }
@@ -68,7 +55,7 @@ const Thing* newest(const Production& p, std::vector<Thing> Project::*list, cons
 
 class Maker {
   public:
-    explicit Maker(Statistics& statistics) : s_(statistics) {}
+    Maker(Statistics& statistics, const ProductionTotals* totals) : s_(statistics), totals_(totals) {}
 
     Expected<void> make() {
         std::vector<std::string> regions, jobs;
@@ -80,6 +67,10 @@ class Maker {
         for (const ProductionRun& run : s_.production.runs) {
             for (const RegionValue& r : run.values.regions) add(regions, r.region_id);
             if (run.values.panel) add(jobs, run.values.panel->job_id);
+        }
+        if (totals_) {
+            for (const auto& [id, all] : totals_->regions) add(regions, id);
+            for (const auto& [id, all] : totals_->panels) add(jobs, id);
         }
         const std::string& wanted = s_.options.region;
         bool found = wanted.empty();
@@ -123,9 +114,8 @@ class Maker {
                 out.passed += r.gate_passed;
                 for (const Text& why : r.refusals)
                     count_refusal(out.refusals, why, s_.production.runs[i].values.started_utc);
-                const bool over = !r.gate_passed && r.status == CorrectionStatus::over_limit;
-                out.over_limit += over;
-                if (!over && !(r.gate_passed && r.status == CorrectionStatus::ok)) {
+                out.over_limit += !r.gate_passed && r.status == CorrectionStatus::over_limit;
+                if (!is_value(r)) {
                     ++out.left_out;
                     continue;
                 }
@@ -140,50 +130,49 @@ class Maker {
     }
 
     void add_six(RegionStatistics& out, const Region* setup, const std::vector<Pose>& found) const {
-        constexpr std::array<const char*, 6> keys{"x_mm", "y_mm", "z_mm", "a_deg", "b_deg", "c_deg"};
         constexpr std::array<const char*, 6> names{"X", "Y", "Z", "A", "B", "C"};
         for (std::size_t k = 0; k < 6; ++k) {
             if (setup && !setup->free[k]) continue;
             Characteristic c;
-            c.key = keys[k];
+            c.key = kDisplacementKeys[k];
             c.name = std::string(names[k]);
             c.unit = k < 3 ? "mm" : "deg";
             if (setup) c.limits = about(0, k < 3 ? setup->limits.translation_mm : setup->limits.rotation_deg);
-            for (const Pose& d : found) {
-                const KukaAbc abc = kuka_from_rotation(d.linear());
-                const double angles[] = {abc.a_deg, abc.b_deg, abc.c_deg};
-                c.values.push_back(k < 3 ? d.translation()[static_cast<Eigen::Index>(k)] : angles[k - 3]);
-            }
+            for (const Pose& d : found) c.values.push_back(displacement_numbers(d)[k]);
             out.characteristics.push_back(std::move(c));
         }
     }
 
     void add_path(RegionStatistics& out, const Region& region, const std::vector<Pose>& found) const {
         for (auto file = s_.production.files.rbegin(); file != s_.production.files.rend(); ++file) {
-            const auto& regions = file->project.regions;
-            if (std::none_of(regions.begin(), regions.end(),
-                             [&](const Region& r) { return r.id == region.id; }))
-                continue;
-            double worst = -1;
-            std::size_t worst_at = 0;
-            for (const PathDirection& at : path_directions(file->project, region)) {
+            const auto points = file->path_points.find(region.id);
+            if (points == file->path_points.end()) continue;
+            for (const PathDirection& at : points->second) {
                 Characteristic c;
-                c.key = at.spot_id + (at.normal ? "_normal_mm" : "_binormal_mm");
+                c.key = path_point_key(at);
                 c.name =
                     at.normal ? Text("spot {}, normal", at.spot_id) : Text("spot {}, binormal", at.spot_id);
                 c.path_point = true;
                 if (s_.options.tolerance_mm) c.limits = about(0, *s_.options.tolerance_mm / 2);
-                double square = 0;
-                for (const Pose& d : found) {
-                    c.values.push_back(at.value(d));
-                    square += c.values.back() * c.values.back();
-                }
-                if (square > worst) worst = square, worst_at = out.characteristics.size();
+                for (const Pose& d : found) c.values.push_back(at.value(d));
                 out.characteristics.push_back(std::move(c));
             }
-            if (worst >= 0) out.characteristics[worst_at].worst_point = true;
             return;
         }
+    }
+
+    // The path point with the largest mean square.
+    static void mark_worst_point(RegionStatistics& out) {
+        Characteristic* worst = nullptr;
+        double largest = -1;
+        for (Characteristic& c : out.characteristics) {
+            const ProcessSummary& r = c.summary;
+            const double square = r.mean * r.mean + r.s * r.s * (r.n - 1) / r.n;
+            if (!c.path_point || !(square > largest)) continue;
+            worst = &c;
+            largest = square;
+        }
+        if (worst) worst->worst_point = true;
     }
 
     Expected<void> panel(const std::string& id) {
@@ -211,9 +200,9 @@ class Maker {
             if (job)
                 for (const PanelPlace& p : job->places)
                     if (p.id == place_id) taught = &p;
-            two[0].key = place_id + "_gap_mm";
+            two[0].key = place_key(place_id, true);
             two[0].name = Text("place {}, gap", place_id);
-            two[1].key = place_id + "_flush_mm";
+            two[1].key = place_key(place_id, false);
             two[1].name = Text("place {}, flush", place_id);
             if (taught) {
                 two[0].nominal = taught->gap_mm;
@@ -227,10 +216,26 @@ class Maker {
     }
 
     Expected<void> finish(RegionStatistics out) {
+        const RegionTotals* all = nullptr;
+        if (totals_) {
+            const auto& of_kind = out.panel ? totals_->panels : totals_->regions;
+            if (const auto found = of_kind.find(out.id); found != of_kind.end()) all = &found->second;
+        }
+        if (all) {
+            out.runs = all->runs;
+            out.passed = all->passed;
+            out.over_limit = all->over_limit;
+            out.left_out = all->left_out;
+            out.refusals = all->refusals;
+        }
         most_frequent_first(out.refusals);
-        for (Characteristic& c : out.characteristics)
-            if (!c.values.empty()) SEAM_OK(judge(c));
         std::erase_if(out.characteristics, [](const Characteristic& c) { return c.values.empty(); });
+        for (Characteristic& c : out.characteristics) {
+            SEAM_OK(judge(c));
+            if (all) SEAM_OK(judge_all(c, out, *all));
+            say_caveats(c);
+        }
+        mark_worst_point(out);
         s_.regions.push_back(std::move(out));
         return {};
     }
@@ -249,7 +254,24 @@ class Maker {
         for (const std::size_t run : c.runs) days.push_back(s_.production.runs[run].day);
         SEAM_TRY(auto trend, trend_of(days, c.values, c.limits));
         c.trend = trend;
-        say_caveats(c);
+        return {};
+    }
+
+    // Of all values what their sums tell.
+    Expected<void> judge_all(Characteristic& c, const RegionStatistics& of, const RegionTotals& all) const {
+        const auto sums = all.sums.find(c.key);
+        if (sums == all.sums.end()) return {};
+        SEAM_TRY(auto summary, summarise_sums(sums->second, c.limits));
+        const bool below = c.limits.lower && summary.lowest < *c.limits.lower;
+        const bool above = c.limits.upper && summary.highest > *c.limits.upper;
+        if (below || above) {
+            SEAM_TRY(summary.beyond, totals_->beyond(of.id, of.panel, c.key, c.limits));
+        }
+        summary.median = c.summary.median;
+        summary.normal_p = c.summary.normal_p;
+        summary.by_quantiles = c.summary.by_quantiles;
+        c.summary = summary;
+        c.trend = trend_of(sums->second, c.limits);
         return {};
     }
 
@@ -276,8 +298,24 @@ class Maker {
 
     void counts() {
         std::vector<UnmeasuredSpot>& list = s_.unmeasured;
+        if (totals_) {
+            s_.parts = totals_->parts;
+            s_.first_utc = totals_->first_utc;
+            s_.last_utc = totals_->last_utc;
+            s_.by_type = totals_->by_type;
+            s_.by_status = totals_->by_status;
+            list = totals_->unmeasured;
+            return most_frequent_first(list);
+        }
+        const auto& runs = s_.production.runs;
+        s_.parts = runs.size();
+        if (!runs.empty()) {
+            s_.first_utc = runs.front().values.started_utc;
+            s_.last_utc = runs.back().values.started_utc;
+        }
         for (const ProductionRun& run : s_.production.runs) {
             ++s_.by_status[static_cast<std::size_t>(run.values.status)];
+            if (!run.values.type_id.empty()) ++s_.by_type[run.values.type_id];
             for (const auto& missing : run.values.not_measured) {
                 const auto& [spot, status] = missing;
                 auto at = std::find_if(list.begin(), list.end(), [&](const UnmeasuredSpot& u) {
@@ -291,6 +329,10 @@ class Maker {
     }
 
     void cycle() {
+        if (totals_) {
+            s_.cycle = totals_->cycle;
+            return;
+        }
         std::vector<double> took, between;
         for (std::size_t i = 0; i < s_.production.runs.size(); ++i) {
             const ProductionRun& run = s_.production.runs[i];
@@ -336,6 +378,16 @@ class Maker {
                 Text("The runs were made with {} different setups: a step may be a change of the "
                      "project and not of the parts.",
                      p.setups));
+        const bool newest = std::ranges::any_of(s_.regions, [](const RegionStatistics& r) {
+            return std::ranges::any_of(r.characteristics, [](const Characteristic& c) {
+                return c.values.size() < static_cast<std::size_t>(c.summary.n);
+            });
+        });
+        if (newest)
+            say.push_back(Text(
+                "Charts, medians, quantiles and tests for normality are of the newest parts of each region; "
+                "everything else is of all {}.",
+                s_.parts));
         int left_out = 0;
         for (const RegionStatistics& r : s_.regions) left_out += r.panel ? 0 : r.left_out;
         if (left_out > 0)
@@ -351,6 +403,7 @@ class Maker {
     }
 
     Statistics& s_;
+    const ProductionTotals* totals_;
 };
 
 }  // namespace
@@ -378,9 +431,34 @@ std::string RefusalReason::said(Language language) const {
     return out;
 }
 
-Expected<Statistics> production_statistics(const std::vector<std::filesystem::path>& files,
-                                           const StatisticsOptions& options) {
-    if (files.empty()) return usage_error("no file is given", "statistics", "name FILE.seam");
+std::array<double, 6> displacement_numbers(const Pose& d) {
+    const KukaAbc abc = kuka_from_rotation(d.linear());
+    return {d.translation().x(), d.translation().y(), d.translation().z(), abc.a_deg, abc.b_deg, abc.c_deg};
+}
+std::string path_point_key(const PathDirection& at) {
+    return at.spot_id + (at.normal ? "_normal_mm" : "_binormal_mm");
+}
+std::string place_key(const std::string& place_id, bool gap) {
+    return place_id + (gap ? "_gap_mm" : "_flush_mm");
+}
+bool is_value(const RegionValue& r) {
+    return r.gate_passed ? r.status == CorrectionStatus::ok : r.status == CorrectionStatus::over_limit;
+}
+
+// "{}: {}" says nothing itself; what it joins does. Words of somebody else are their own pattern.
+const Text& telling_refusal(const Text& text) {
+    if (!only_signs(text.key())) return text;
+    for (auto argument = text.arguments().rbegin(); argument != text.arguments().rend(); ++argument)
+        if (const Text* inner = std::get_if<Text>(&*argument)) return telling_refusal(*inner);
+    return text;
+}
+
+std::string refusal_pattern(const Text& text) {
+    const Text& t = telling_refusal(text);
+    return only_signs(t.key()) ? t.english().substr(0, kLongestSaid) : t.key();
+}
+
+Expected<void> check_statistics_options(const StatisticsOptions& options) {
     if (options.subgroup < 1 || options.subgroup > 25)
         return usage_error(Text("a subgroup of {} values is none", options.subgroup), "statistics",
                            "give 1 to 25");
@@ -389,11 +467,24 @@ Expected<Statistics> production_statistics(const std::vector<std::filesystem::pa
     const RunValuesWanted& when = options.runs;
     if (!when.since_utc.empty() && !when.until_utc.empty() && when.until_utc <= when.since_utc)
         return usage_error("the end is not after the beginning", "statistics", "give --since before --until");
-    SEAM_TRY(auto production, production_of(files, options.runs));
+    return {};
+}
+
+Expected<Statistics> statistics_of(Production production, const StatisticsOptions& options,
+                                   const ProductionTotals* totals) {
     Statistics s;
     s.options = options;
     s.production = std::move(production);
-    SEAM_OK(Maker(s).make());
+    SEAM_OK(Maker(s, totals).make());
+    return s;
+}
+
+Expected<Statistics> production_statistics(const std::vector<std::filesystem::path>& files,
+                                           const StatisticsOptions& options) {
+    if (files.empty()) return usage_error("no file is given", "statistics", "name FILE.seam");
+    SEAM_OK(check_statistics_options(options));
+    SEAM_TRY(auto production, production_of(files, options.runs));
+    SEAM_TRY(auto s, statistics_of(std::move(production), options));
     const auto& read = s.production.files;
     const bool one_kind =
         read.size() == 1 && (read.front().project.part_types.size() < 2 || !options.runs.type_id.empty());

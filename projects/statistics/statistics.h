@@ -18,6 +18,8 @@
 // the single values (core/statistics/ewma.h), limits from the values themselves.
 
 #include <array>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +27,7 @@
 #include "core/acceptance/stability.h"
 #include "core/statistics/capability.h"
 #include "core/statistics/ewma.h"
+#include "core/statistics/row_sums.h"
 #include "core/statistics/trend.h"
 #include "projects/statistics/diagnosis.h"
 
@@ -46,7 +49,7 @@ struct Characteristic {
     ProcessLimits limits;
     double nominal = 0;
     std::vector<std::size_t> runs;  // in Production::runs
-    std::vector<double> values;
+    std::vector<double> values;     // of a large production only the newest, see ProductionTotals
     ProcessSummary summary;
     std::optional<Stability> chart;  // none: fewer than 2 subgroups, no scatter
     std::optional<Ewma> ewma;
@@ -88,8 +91,11 @@ struct CycleTime {
 
 struct Statistics {
     StatisticsOptions options;
-    Production production;
-    std::array<int, 8> by_status{};  // by RunStatus
+    Production production;  // of a fleet only the newest runs
+    std::size_t parts = 0;
+    std::string first_utc, last_utc;     // when they were begun; empty: no part
+    std::map<std::string, int> by_type;  // of runs that have one
+    std::array<int, 8> by_status{};      // by RunStatus
     std::vector<RegionStatistics> regions;
     std::vector<UnmeasuredSpot> unmeasured;  // most frequent first
     std::optional<CycleTime> cycle;
@@ -97,6 +103,46 @@ struct Statistics {
     std::vector<Text> caveats;
     int count(RunStatus status) const { return by_status[static_cast<std::size_t>(status)]; }
 };
+
+// What a database that holds more runs than anybody wants to load says of all of them, where Production has only the newest
+// of each region.
+struct RegionTotals {
+    int runs = 0, passed = 0, over_limit = 0, left_out = 0;
+    std::map<std::string, RowSums>
+        sums;  // by the key of the characteristic; rows are followed within a station
+    std::vector<RefusalReason> refusals;
+};
+struct ProductionTotals {
+    std::size_t parts = 0;
+    std::string first_utc, last_utc;
+    std::map<std::string, int> by_type;
+    std::array<int, 8> by_status{};
+    std::map<std::string, RegionTotals> regions, panels;
+    std::vector<UnmeasuredSpot> unmeasured;
+    std::optional<CycleTime> cycle;
+    // How many values of a region's or panel job's characteristic lie beyond its limits.
+    std::function<Expected<int>(const std::string& id, bool panel, const std::string& key,
+                                const ProcessLimits& limits)>
+        beyond;
+};
+
+// The six numbers of a displacement (mm; KUKA angles in degree).
+inline constexpr std::array<const char*, 6> kDisplacementKeys{"x_mm",  "y_mm",  "z_mm",
+                                                              "a_deg", "b_deg", "c_deg"};
+std::array<double, 6> displacement_numbers(const Pose& workobject_from_movedworkobject);
+std::string path_point_key(const PathDirection& at);
+std::string place_key(const std::string& place_id, bool gap);
+// Whether a region's displacement is a value of production, see above.
+bool is_value(const RegionValue& region);
+// What a refusal is counted by: its pattern, and its sentence without those that only join.
+std::string refusal_pattern(const Text& text);
+const Text& telling_refusal(const Text& text);
+
+// Of runs that were read from anywhere; with `totals` of all that they say, the runs being the newest. Charts, median,
+// quantiles and the test for normality are of the runs that are there.
+Expected<Statistics> statistics_of(Production production, const StatisticsOptions& options,
+                                   const ProductionTotals* totals = nullptr);
+Expected<void> check_statistics_options(const StatisticsOptions& options);
 
 // Error (usage): an unknown region, options that are none; (file).
 Expected<Statistics> production_statistics(const std::vector<std::filesystem::path>& files,

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <map>
 
 #include "projects/statistics/statistics_page.h"
 
@@ -103,6 +102,7 @@ json characteristic_json(const Statistics& s, const Characteristic& c) {
                 {"ewma", nullptr},
                 {"trend", trend_json(s, c)},
                 {"caveats", c.caveats}};
+    if (c.values.size() < static_cast<std::size_t>(r.n)) out["newest"] = c.values.size();
     if (r.by_quantiles)
         out["by_quantiles"] = {{"pp", index_json(r.by_quantiles->spread, false)},
                                {"ppk", index_json(r.by_quantiles->worst_side, false)}};
@@ -144,9 +144,6 @@ nlohmann::json statistics_json(const Statistics& s) {
                            {"characteristics", std::move(list)},
                            {"refusals", std::move(refusals)}});
     }
-    std::map<std::string, int> by_type;  // of runs that have one
-    for (const ProductionRun& run : s.production.runs)
-        if (!run.values.type_id.empty()) ++by_type[run.values.type_id];
     for (const UnmeasuredSpot& u : s.unmeasured)
         unmeasured.push_back({{"spot", u.spot_id}, {"status", to_string(u.status)}, {"count", u.count}});
     json cycle;
@@ -158,12 +155,12 @@ nlohmann::json statistics_json(const Statistics& s) {
                  {"p95_s", s.cycle->p95_s},
                  {"longest_s", s.cycle->longest_s},
                  {"median_between_starts_s", s.cycle->between_s}};
-    const auto& runs = s.production.runs;
-    json out = {{"status", runs.empty() ? "no_production" : "ok"},
+    const bool none = s.parts == 0;
+    json out = {{"status", none ? "no_production" : "ok"},
                 {"files", std::move(files)},
-                {"first_utc", runs.empty() ? json() : json(runs.front().values.started_utc)},
-                {"last_utc", runs.empty() ? json() : json(runs.back().values.started_utc)},
-                {"runs", runs.size()},
+                {"first_utc", none ? json() : json(s.first_utc)},
+                {"last_utc", none ? json() : json(s.last_utc)},
+                {"runs", s.parts},
                 {"by_status", std::move(status)},
                 {"left_out",
                  {{"proofs", s.production.proofs},
@@ -175,7 +172,7 @@ nlohmann::json statistics_json(const Statistics& s) {
                 {"cycle", std::move(cycle)},
                 {"caveats", s.caveats}};
     if (s.diagnosis) out["diagnosis"] = diagnosis_json(*s.diagnosis);
-    if (!by_type.empty()) out["by_type"] = by_type;
+    if (!s.by_type.empty()) out["by_type"] = s.by_type;
     return out;
 }
 

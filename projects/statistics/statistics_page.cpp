@@ -49,32 +49,27 @@ class Writer {
     static std::string day_of(double day) { return utc_text(std::llround(86400 * day)).substr(0, 10); }
 
     void summary() {
-        const auto& runs = s_.production.runs;
         std::string names;
         for (const ProductionFile& f : s_.production.files)
             names += (names.empty() ? "" : ", ") + f.path.filename().string();
-        if (runs.empty()) {
+        if (s_.parts == 0) {
             page_.paragraph(t("{}: no run of production in this time.", names));
             return;
         }
-        page_.paragraph(t("{}: {} parts from {} to {} (UTC).", names, runs.size(),
-                          runs.front().values.started_utc.substr(0, 16),
-                          runs.back().values.started_utc.substr(0, 16)));
+        page_.paragraph(t("{}: {} parts from {} to {} (UTC).", names, s_.parts, s_.first_utc.substr(0, 16),
+                          s_.last_utc.substr(0, 16)));
         Rows rows{{t("Outcome"), t("Parts"), t("Share (%)")}};
         for (std::size_t i = 0; i < s_.by_status.size(); ++i)
             if (s_.by_status[i] > 0)
                 rows.push_back({Text(to_string(static_cast<RunStatus>(i)).data()).in(language_),
                                 std::to_string(s_.by_status[i]),
-                                number(100.0 * s_.by_status[i] / static_cast<double>(runs.size()), 2)});
+                                number(100.0 * s_.by_status[i] / static_cast<double>(s_.parts), 2)});
         page_.table(rows);
-        std::map<std::string, int> types;  // runs of before part types have none
-        for (const ProductionRun& run : runs)
-            if (!run.values.type_id.empty()) ++types[run.values.type_id];
-        if (types.empty()) return;
+        if (s_.by_type.empty()) return;
         Rows by_type{{t("Part type"), t("Parts"), t("Share (%)")}};
-        for (const auto& [type, parts] : types)
+        for (const auto& [type, parts] : s_.by_type)
             by_type.push_back(
-                {type, std::to_string(parts), number(100.0 * parts / static_cast<double>(runs.size()), 2)});
+                {type, std::to_string(parts), number(100.0 * parts / static_cast<double>(s_.parts), 2)});
         page_.table(by_type);
     }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "devices/capture/capture.h"
+#include "projects/report/metrics.h"
 
 namespace seamwright {
 namespace {
@@ -34,34 +35,6 @@ nlohmann::json vector_json(const std::optional<Eigen::Vector3d>& v) {
         list.push_back(std::isfinite((*v)[k]) ? nlohmann::json((*v)[k]) : nlohmann::json());
     return list;
 }
-
-// Inside the quotes of a label.
-std::string label(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (c == '\\' || c == '"') out += '\\';
-        if (c == '\n')
-            out += "\\n";
-        else
-            out += c;
-    }
-    return out;
-}
-
-class Metrics {
-  public:
-    void head(const char* name, const char* type, const char* help) {
-        text_ += fmt::format("# HELP {} {}\n# TYPE {} {}\n", name, help, name, type);
-    }
-    void value(const std::string& name_and_labels, double value) {
-        text_ += std::isfinite(value) ? fmt::format("{} {}\n", name_and_labels, value)
-                                      : fmt::format("{} NaN\n", name_and_labels);
-    }
-    std::string text() { return std::move(text_); }
-
-  private:
-    std::string text_;
-};
 
 }  // namespace
 
@@ -173,7 +146,8 @@ nlohmann::json status_alarms_json(const StatusView& v) {
 }
 
 std::string status_metrics(const StatusView& v) {
-    Metrics m;
+    report::Metrics m;
+    const auto label = [](const std::string& text) { return report::Metrics::label(text); };
     const WatchCounts& c = v.counts;
     m.head("seamwright_parts_total", "counter", "Parts that were started.");
     m.value("seamwright_parts_total", static_cast<double>(c.parts));

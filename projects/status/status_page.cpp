@@ -23,11 +23,7 @@ class PageWriter {
         trends();
         alarms();
         page_.paragraph(fmt::format("{} · {}", v_.program, v_.now_utc));
-        std::string html = page_.html();
-        // Asked for again by the browser: no script runs here.
-        if (const auto at = html.find("<head>"); at != std::string::npos)
-            html.insert(at + 6, "<meta http-equiv=\"refresh\" content=\"5\">");
-        return html;
+        return page_.html_again_after(5);
     }
 
   private:

@@ -49,8 +49,8 @@ bool names_loopback(std::string_view host) {
 
 class Answerer {
   public:
-    Answerer(const StatusBoard& board, const StatusServerOptions& options, bool loopback)
-        : board_(board), options_(options), loopback_(loopback) {}
+    Answerer(StatusPages pages, const StatusServerOptions& options, bool loopback)
+        : pages_(std::move(pages)), options_(options), loopback_(loopback) {}
 
     Response answer(const Request& request) const {
         const std::string_view target = view_of(request.target());
@@ -65,15 +65,8 @@ class Answerer {
             return refused;
         }
         if (path == "/health") return plain(request, http::status::ok, "ok\n");
-        if (path == "/api/state") return json(request, status_json(board_.view()));
-        if (path == "/api/parts") return json(request, status_parts_json(board_.view()));
-        if (path == "/api/alarms") return json(request, status_alarms_json(board_.view()));
-        if (path == "/metrics")
-            return made(request, http::status::ok, "text/plain; version=0.0.4; charset=utf-8",
-                        status_metrics(board_.view()));
-        if (path == "/")
-            return made(request, http::status::ok, "text/html; charset=utf-8",
-                        status_page(board_.view(), options_.language));
+        if (const auto page = pages_.find(path); page != pages_.end())
+            return made(request, http::status::ok, page->second.type, page->second.body());
         return plain(request, http::status::not_found, "there is no such page\n");
     }
 
@@ -99,12 +92,6 @@ class Answerer {
     }
 
   private:
-    // Names of parts are any bytes that a robot sends.
-    static Response json(const Request& request, const nlohmann::json& value) {
-        return made(request, http::status::ok, "application/json",
-                    value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-    }
-
     bool may(const Request& request, std::string_view target) const {
         if (options_.token.empty()) return loopback_ && names_loopback(view_of(request[http::field::host]));
         const std::string_view header = view_of(request[http::field::authorization]);
@@ -121,7 +108,7 @@ class Answerer {
         return false;
     }
 
-    const StatusBoard& board_;
+    StatusPages pages_;
     StatusServerOptions options_;
     bool loopback_;
 };
@@ -209,8 +196,8 @@ Expected<tcp::endpoint> endpoint_of(const std::string& text) {
 }  // namespace
 
 struct StatusServer::Impl {
-    Impl(const StatusBoard& board, const StatusServerOptions& options, bool loopback)
-        : answerer(board, options, loopback) {}
+    Impl(StatusPages pages, const StatusServerOptions& options, bool loopback)
+        : answerer(std::move(pages), options, loopback) {}
     ~Impl() {
         context.stop();
         if (thread.joinable()) thread.join();
@@ -245,13 +232,30 @@ int StatusServer::port() const {
     return impl_->acceptor.local_endpoint().port();
 }
 
+StatusPage json_page(std::function<nlohmann::json()> value) {
+    return {"application/json", [value = std::move(value)] {
+                return value().dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+            }};
+}
+
 Expected<StatusServer> StatusServer::start(const StatusBoard& board, const StatusServerOptions& options) {
+    return start({{"/api/state", json_page([&board] { return status_json(board.view()); })},
+                  {"/api/parts", json_page([&board] { return status_parts_json(board.view()); })},
+                  {"/api/alarms", json_page([&board] { return status_alarms_json(board.view()); })},
+                  {"/metrics", {kMetricsPage, [&board] { return status_metrics(board.view()); }}},
+                  {"/",
+                   {kHtmlPage,
+                    [&board, language = options.language] { return status_page(board.view(), language); }}}},
+                 options);
+}
+
+Expected<StatusServer> StatusServer::start(StatusPages pages, const StatusServerOptions& options) {
     SEAM_TRY(const auto endpoint, endpoint_of(options.address));
     const bool loopback = endpoint.address().is_loopback();
     if ((!loopback || !options.token.empty()) && options.token.size() < kShortestToken)
         return usage_error(Text("{} needs a token of at least {} signs", options.address, kShortestToken),
                            "--status", "give --status-token FILE, or an address of this computer, 127.0.0.1");
-    auto impl = std::make_unique<Impl>(board, options, loopback);
+    auto impl = std::make_unique<Impl>(std::move(pages), options, loopback);
     beast::error_code error;
     impl->acceptor.open(endpoint.protocol(), error);
     if (!error) impl->acceptor.set_option(asio::socket_base::reuse_address(true), error);

@@ -237,7 +237,7 @@
     </message>
 </context>
 <context>
-    <name>StripePanel</name>
+    <name>seamwright::StripePanel</name>
     <message>
         <source>Stripe in the image</source>
         <translation>Streifen im Bild</translation>
@@ -3741,6 +3741,14 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
 <context>
     <name>seamwright::MainWindow</name>
     <message>
+        <source>Path corrected by a run...</source>
+        <translation>Von einem Lauf korrigierter Pfad...</translation>
+    </message>
+    <message>
+        <source>Program for the robot&apos;s controller...</source>
+        <translation>Programm für die Robotersteuerung...</translation>
+    </message>
+    <message>
         <source>Sign in...</source>
         <translation>Anmelden...</translation>
     </message>
@@ -4777,6 +4785,46 @@ A %5  B %6  C %7 Grad</translation>
 <context>
     <name>seamwright::RegionsPage</name>
     <message>
+        <source>Pick 3-2-1 on the part</source>
+        <translation>3-2-1 am Teil anklicken</translation>
+    </message>
+    <message>
+        <source>Six clicks on the part in 3D: three on a plane, two along X, one for the origin; the frame goes there</source>
+        <translation>Sechs Klicks auf das Teil in 3D: drei auf einer Ebene, zwei entlang X, einer für den Ursprung; das Koordinatensystem kommt dorthin</translation>
+    </message>
+    <message>
+        <source>There is no part to click on: step 1, Cell, imports its mesh.</source>
+        <translation>Es gibt kein Teil zum Anklicken: Schritt 1, Zelle, importiert sein Netz.</translation>
+    </message>
+    <message>
+        <source>click point %1 of 3 of the plane, counter-clockwise seen from above</source>
+        <translation>Punkt %1 von 3 der Ebene anklicken, von oben gesehen gegen den Uhrzeigersinn</translation>
+    </message>
+    <message>
+        <source>click point %1 of 2 along X</source>
+        <translation>Punkt %1 von 2 entlang X anklicken</translation>
+    </message>
+    <message>
+        <source>click the point beside which the origin lies</source>
+        <translation>den Punkt anklicken, neben dem der Ursprung liegt</translation>
+    </message>
+    <message>
+        <source>Frame by 3-2-1: %1.</source>
+        <translation>Koordinatensystem nach 3-2-1: %1.</translation>
+    </message>
+    <message>
+        <source>The frame stands where it was picked; undo brings the old one back.</source>
+        <translation>Das Koordinatensystem steht, wo geklickt wurde; Rückgängig bringt das alte wieder.</translation>
+    </message>
+    <message>
+        <source>Encircle spots</source>
+        <translation>Messstellen umfahren</translation>
+    </message>
+    <message>
+        <source>Draw a line around spots in the 3D view: they become the chosen region&apos;s, or a region of their own where none is chosen. The right mouse button does the same at any time.</source>
+        <translation>Im 3D-Bild eine Linie um Messstellen ziehen: sie werden die der gewählten Region oder, wo keine gewählt ist, eine eigene Region. Die rechte Maustaste tut jederzeit dasselbe.</translation>
+    </message>
+    <message>
         <source>A region is what moves as one piece: its spots tell where it has gone, its frame is what the robot gets.</source>
         <translation>Ein Korrekturbereich ist, was sich als ein Stück bewegt: seine Messstellen sagen, wohin; seinen Frame bekommt der Roboter.</translation>
     </message>
@@ -5355,6 +5403,14 @@ ausgelassen</translation>
 <context>
     <name>seamwright::SceneView</name>
     <message>
+        <source>moved %1 mm</source>
+        <translation>%1 mm verschoben</translation>
+    </message>
+    <message>
+        <source>, 3 sigma %1 mm</source>
+        <translation>, 3 Sigma %1 mm</translation>
+    </message>
+    <message>
         <source>No part yet: step 1, Cell, imports its mesh.</source>
         <translation>Noch kein Teil: Schritt 1, Zelle, importiert sein Netz.</translation>
     </message>
@@ -5379,8 +5435,8 @@ ausgelassen</translation>
         <translation>Teil in 3D</translation>
     </message>
     <message>
-        <source>Drag turns, Shift and drag moves, wheel zooms, a click selects. 1 front, 2 top, 3 iso, F fit.</source>
-        <translation>Ziehen dreht, Umschalt und Ziehen verschiebt, Rad zoomt, ein Klick wählt. 1 vorn, 2 oben, 3 iso, F einpassen.</translation>
+        <source>Drag turns, Shift and drag moves, wheel zooms, a click selects, a drag with the right button encircles spots. 1 front, 2 top, 3 iso, F fit.</source>
+        <translation>Ziehen dreht, Umschalt und Ziehen verschiebt, Rad zoomt, ein Klick wählt, Ziehen mit der rechten Taste umfährt Messstellen. 1 vorn, 2 oben, 3 iso, F einpassen.</translation>
     </message>
     <message>
         <source>Part</source>
@@ -6390,6 +6446,260 @@ und %1 weitere</translation>
     <message>
         <source>Nobody signs in</source>
         <translation>Niemand meldet sich an</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::PathDialog</name>
+    <message>
+        <source>Path corrected by a run</source>
+        <translation>Von einem Lauf korrigierter Pfad</translation>
+    </message>
+    <message>
+        <source>Taught path</source>
+        <translation>Geteachter Pfad</translation>
+    </message>
+    <message>
+        <source>A table or a robot program</source>
+        <translation>Eine Tabelle oder ein Roboterprogramm</translation>
+    </message>
+    <message>
+        <source>Choose the path...</source>
+        <translation>Pfad wählen...</translation>
+    </message>
+    <message>
+        <source>A table (.csv) or a robot program: KRL, RAPID, FANUC, URScript, APT</source>
+        <translation>Eine Tabelle (.csv) oder ein Roboterprogramm: KRL, RAPID, FANUC, URScript, APT</translation>
+    </message>
+    <message>
+        <source>Written as</source>
+        <translation>Geschrieben als</translation>
+    </message>
+    <message>
+        <source>In whose notation a table&apos;s poses are</source>
+        <translation>In wessen Schreibweise die Posen einer Tabelle stehen</translation>
+    </message>
+    <message>
+        <source>the robot&apos;s base</source>
+        <translation>der Roboterbasis</translation>
+    </message>
+    <message>
+        <source>the work object</source>
+        <translation>dem Werkobjekt</translation>
+    </message>
+    <message>
+        <source>Points are in</source>
+        <translation>Punkte stehen in</translation>
+    </message>
+    <message>
+        <source>Of a program: its own frame is the work object</source>
+        <translation>Bei einem Programm: sein eigenes Koordinatensystem ist das Werkobjekt</translation>
+    </message>
+    <message>
+        <source>Corrected by</source>
+        <translation>Korrigiert von</translation>
+    </message>
+    <message>
+        <source>The run whose displacements move the path</source>
+        <translation>Der Lauf, dessen Verschiebungen den Pfad bewegen</translation>
+    </message>
+    <message>
+        <source>The path goes on from its last point to its first</source>
+        <translation>Der Pfad geht vom letzten Punkt zum ersten weiter</translation>
+    </message>
+    <message>
+        <source>A closed bead</source>
+        <translation>Eine geschlossene Naht</translation>
+    </message>
+    <message>
+        <source>Without the lines that are not understood</source>
+        <translation>Ohne die Zeilen, die nicht verstanden werden</translation>
+    </message>
+    <message>
+        <source>Of a program; the path then has gaps there</source>
+        <translation>Bei einem Programm; der Pfad hat dort dann Lücken</translation>
+    </message>
+    <message>
+        <source>Region</source>
+        <translation>Region</translation>
+    </message>
+    <message>
+        <source>Points</source>
+        <translation>Punkte</translation>
+    </message>
+    <message>
+        <source>In transitions</source>
+        <translation>In Übergängen</translation>
+    </message>
+    <message>
+        <source>Refused because</source>
+        <translation>Verweigert, weil</translation>
+    </message>
+    <message>
+        <source>What each region does to the path</source>
+        <translation>Was jede Region mit dem Pfad macht</translation>
+    </message>
+    <message>
+        <source>Program for</source>
+        <translation>Programm für</translation>
+    </message>
+    <message>
+        <source>The robot that runs it</source>
+        <translation>Der Roboter, der es fährt</translation>
+    </message>
+    <message>
+        <source> mm/s</source>
+        <translation> mm/s</translation>
+    </message>
+    <message>
+        <source>Speed</source>
+        <translation>Geschwindigkeit</translation>
+    </message>
+    <message>
+        <source>Of the program</source>
+        <translation>Des Programms</translation>
+    </message>
+    <message>
+        <source>Name</source>
+        <translation>Name</translation>
+    </message>
+    <message>
+        <source>Of files and program</source>
+        <translation>Von Dateien und Programm</translation>
+    </message>
+    <message>
+        <source>Write the program...</source>
+        <translation>Programm schreiben...</translation>
+    </message>
+    <message>
+        <source>Asks for a folder; nothing is sent to the robot</source>
+        <translation>Fragt nach einem Ordner; an den Roboter wird nichts gesendet</translation>
+    </message>
+    <message>
+        <source>Close</source>
+        <translation>Schließen</translation>
+    </message>
+    <message>
+        <source>The path leaves the scene</source>
+        <translation>Der Pfad verschwindet aus der Szene</translation>
+    </message>
+    <message>
+        <source>run %1: %2, %3</source>
+        <translation>Lauf %1: %2, %3</translation>
+    </message>
+    <message>
+        <source>Choose the path as it was taught.</source>
+        <translation>Den Pfad wählen, wie er geteacht wurde.</translation>
+    </message>
+    <message>
+        <source>There is no run yet: measure a part first.</source>
+        <translation>Es gibt noch keinen Lauf: zuerst ein Teil messen.</translation>
+    </message>
+    <message>
+        <source>%1 points on %2 mm, moved by up to %3 mm, 3 sigma at most %4 mm</source>
+        <translation>%1 Punkte auf %2 mm, um bis zu %3 mm verschoben, 3 Sigma höchstens %4 mm</translation>
+    </message>
+    <message>
+        <source>Refused, nothing is written: %1</source>
+        <translation>Verweigert, es wird nichts geschrieben: %1</translation>
+    </message>
+    <message>
+        <source>Paths (*.csv *.src *.mod *.sys *.prg *.ls *.script *.urscript *.apt *.cl *.cls);;All files (*)</source>
+        <translation>Pfade (*.csv *.src *.mod *.sys *.prg *.ls *.script *.urscript *.apt *.cl *.cls);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Folder of the program</source>
+        <translation>Ordner des Programms</translation>
+    </message>
+    <message>
+        <source>The program was not written.</source>
+        <translation>Das Programm wurde nicht geschrieben.</translation>
+    </message>
+    <message>
+        <source>%1 written to %2</source>
+        <translation>%1 nach %2 geschrieben</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::ProgramDialog</name>
+    <message>
+        <source>Program for the robot&apos;s controller</source>
+        <translation>Programm für die Robotersteuerung</translation>
+    </message>
+    <message>
+        <source>The module that talks to Seamwright, the measuring program with entry, trigger and exit of every spot, and the application&apos;s frames. Drive it slowly once before it runs by itself.</source>
+        <translation>Das Modul, das mit Seamwright spricht, das Messprogramm mit Einfahrt, Auslösung und Ausfahrt jeder Messstelle und die Koordinatensysteme der Anwendung. Einmal langsam abfahren, bevor es allein läuft.</translation>
+    </message>
+    <message>
+        <source>Robot</source>
+        <translation>Roboter</translation>
+    </message>
+    <message>
+        <source>Whose program it is</source>
+        <translation>Wessen Programm es ist</translation>
+    </message>
+    <message>
+        <source>Part type</source>
+        <translation>Teiletyp</translation>
+    </message>
+    <message>
+        <source>Its spots; the program says the type with its start signal</source>
+        <translation>Seine Messstellen; das Programm nennt den Typ mit seinem Startsignal</translation>
+    </message>
+    <message>
+        <source>Controller</source>
+        <translation>Steuerung</translation>
+    </message>
+    <message>
+        <source>For which controller the files are</source>
+        <translation>Für welche Steuerung die Dateien sind</translation>
+    </message>
+    <message>
+        <source>Spot</source>
+        <translation>Messstelle</translation>
+    </message>
+    <message>
+        <source>Via points</source>
+        <translation>Zwischenpunkte</translation>
+    </message>
+    <message>
+        <source>Speed, mm/s</source>
+        <translation>Geschwindigkeit, mm/s</translation>
+    </message>
+    <message>
+        <source>In the order of measuring</source>
+        <translation>In der Reihenfolge des Messens</translation>
+    </message>
+    <message>
+        <source>Write the files...</source>
+        <translation>Dateien schreiben...</translation>
+    </message>
+    <message>
+        <source>Asks for a folder; nothing is sent to the robot</source>
+        <translation>Fragt nach einem Ordner; an den Roboter wird nichts gesendet</translation>
+    </message>
+    <message>
+        <source>Close</source>
+        <translation>Schließen</translation>
+    </message>
+    <message>
+        <source>Nothing more is written</source>
+        <translation>Es wird nichts mehr geschrieben</translation>
+    </message>
+    <message>
+        <source>%1 spots, %2 frames: %3</source>
+        <translation>%1 Messstellen, %2 Koordinatensysteme: %3</translation>
+    </message>
+    <message>
+        <source>Folder of the program</source>
+        <translation>Ordner des Programms</translation>
+    </message>
+    <message>
+        <source>The program was not written.</source>
+        <translation>Das Programm wurde nicht geschrieben.</translation>
+    </message>
+    <message>
+        <source>%1 files written to %2</source>
+        <translation>%1 Dateien nach %2 geschrieben</translation>
     </message>
 </context>
 </TS>

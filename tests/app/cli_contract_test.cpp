@@ -255,10 +255,10 @@ TEST_F(Cli, UsageErrorsEndWithTwo) {
 
 TEST_F(Cli, EveryCommandsHelpShowsAnExample) {
     for (const char* command :
-         {"demo",   "new",       "info",          "check",          "run",      "replay",   "export",
-          "import", "correct",   "plan",          "filter",         "feature",  "match",    "extract",
-          "align",  "calibrate", "devices",       "panel",          "evaluate", "sim-cell", "robot-program",
-          "path",   "gap",       "measure-robot", "measure-trigger"}) {
+         {"demo",   "new",       "info",          "check",           "run",      "replay",   "export",
+          "import", "correct",   "plan",          "filter",          "feature",  "match",    "extract",
+          "align",  "calibrate", "devices",       "panel",           "evaluate", "sim-cell", "robot-program",
+          "path",   "gap",       "measure-robot", "measure-trigger", "follow"}) {
         const ProgramResult r = run({command, "--help"});
         EXPECT_EQ(r.exit_code, 0) << command;
         EXPECT_THAT(r.out, HasSubstr("Example:")) << command;
@@ -353,6 +353,29 @@ TEST_F(Cli, GapNamesWhereTheNozzleDoesNotPass) {
     expect_refused({"gap", project, "--capture", pass, "--nozzle-mm", "2", "--sensor", "Z"}, "no sensor");
     expect_refused({"gap", project, "--spots", "S1,S7", "--nozzle-mm", "2"}, "no spot \"S7\"");
     expect_refused({"gap", project, "--simulated", "--nozzle-mm", "2"}, "already");
+}
+
+TEST_F(Cli, APathIsFollowedOnlyByAGuideAndARobotThatTakesCorrectionsInEveryCycle) {
+    const std::string project = (folder / "gap.seam").string();
+    EXPECT_EQ(run({"gap", project, "--simulated", "--nozzle-mm", "2.5", "--clearance-mm", "0.4"}).exit_code,
+              1);
+    const std::string guide =
+        write("guide.csv", "x_mm,y_mm,z_mm,a_deg,b_deg,c_deg\n0,0,0,0,0,0\n0,10,0,0,0,0\n0,20,0,0,0,0\n");
+    expect_refused({"follow", project}, "there is no guide");
+    expect_refused({"follow", project, "--guide", project + ".csv"}, "gap.seam.csv", 3);
+    expect_refused(
+        {"follow", project, "--guide", write("one.csv", "x_mm,y_mm,z_mm,a_deg,b_deg,c_deg\n0,0,0,0,0,0\n")},
+        "two points");
+    expect_refused({"follow", project, "--guide", guide, "--teach"}, "--spot");
+    const std::vector<std::pair<std::vector<std::string>, const char*>> wrong_options = {
+        {{"follow", project, "--guide", guide, "--limit-mm", "0"}, "limit-mm"},
+        {{"follow", project, "--simulate", "ur-rtde"}, "ur-rtde"},
+        {{"follow", project, "--bend-mm", "2"}, "--simulate"}};
+    for (const auto& [arguments, part] : wrong_options) {
+        const ProgramResult r = run(arguments);
+        EXPECT_EQ(r.exit_code, 2);
+        EXPECT_THAT(r.err, HasSubstr(part));
+    }
 }
 
 TEST_F(Cli, PlanPredictsWhatCorrectStates) {

@@ -127,8 +127,12 @@ TEST_F(Demo, TheRunnerServesTheLineOverRealProtocols) {
         EXPECT_TRUE(wait_for("back", 1));
         say("start CAR-3");
     });
-    r = run_program({"run", project, "--watch", "--push", "--parts", "3", "--log", log, "--json", "-"},
+    // The fleet's database is away: the parts wait in the file, and nothing else waits for it.
+    r = run_program({"run", project, "--watch", "--push", "--parts", "3", "--log", log, "--fleet",
+                     "postgresql://seam:secret@127.0.0.1:1/fleet", "--station", "cell 7", "--json", "-"},
                     folder);
+    EXPECT_NE(r.err.find("runs wait for the fleet's database"), std::string::npos) << r.err;
+    EXPECT_EQ(r.err.find("secret"), std::string::npos) << r.err;
     line.join();
     say("state");
     say("stop");
@@ -149,6 +153,7 @@ TEST_F(Demo, TheRunnerServesTheLineOverRealProtocols) {
     ASSERT_TRUE(file);
     const auto runs = *file->runs();
     ASSERT_GE(runs.size(), 3u);
+    EXPECT_EQ(file->queued().value(), static_cast<std::int64_t>(runs.size()));
     const auto evidence = *file->evidence();
     EXPECT_EQ(std::count_if(evidence.begin(), evidence.end(),
                             [](const Evidence& e) { return kind_of(e) == kHeadlessRun; }),

@@ -20,12 +20,25 @@ using testing::HasSubstr;
 
 class Record : public testing::Test {
   protected:
+    // Half a minute of work that all tests begin with: done once, copied.
+    static std::filesystem::path& commissioned() {
+        static std::filesystem::path folder;
+        return folder;
+    }
+    static void SetUpTestSuite() {
+        commissioned() = test_folder("record_demo");
+        const auto demo =
+            run_program({"demo", "--in-process", "--parts", "1", "--dir", (commissioned() / "out").string()},
+                        commissioned());
+        ASSERT_EQ(demo.exit_code, 0) << demo.err;
+    }
+    static void TearDownTestSuite() { std::filesystem::remove_all(commissioned()); }
+
     std::filesystem::path folder = test_folder("record");
     std::string project = (folder / "out" / "demo.seam").string();
     void SetUp() override {
-        const auto demo =
-            run_program({"demo", "--in-process", "--parts", "1", "--dir", (folder / "out").string()}, folder);
-        ASSERT_EQ(demo.exit_code, 0) << demo.err;
+        std::filesystem::copy(commissioned() / "out", folder / "out",
+                              std::filesystem::copy_options::recursive);
     }
     ~Record() override { std::filesystem::remove_all(folder); }
     json answer_of(const std::vector<std::string>& arguments, int exit_code = 0) {

@@ -65,7 +65,7 @@ TEST_F(StatisticsCommand, BadInputIsOneSentence) {
     refused({"statistics", file.string(), "--tolerance-mm", "nan"}, "tolerance");
     refused({"statistics", file.string(), file.string()}, "given twice");
     refused({"statistics", folder / "none.seam"}, "none.seam", 3);
-    refused({"statistics"}, "files");
+    refused({"statistics"}, "no file is given");
     refused({"statistics", file.string(), "--xlsx", "/nowhere/a.xlsx"}, "cannot be written", 3);
     // Nothing in this time: said, and no file that is read for an answer.
     const ProgramResult none =
@@ -90,19 +90,23 @@ TEST_F(StatisticsCommand, AServiceIsAUnitOfSystemd) {
     const auto unit = folder / "door.service";
     const ProgramResult r =
         run_program({"service", file.string(), "--push", "--user", "root", "--status", "127.0.0.1:8080",
-                     "--report-every", "8h", "--to", folder / "reports", "--out", unit.string()},
+                     "--report-every", "8h", "--to", folder / "reports", "--fleet",
+                     "postgresql://seam@db/fleet", "--station", "line 2", "--out", unit.string()},
                     folder);
     ASSERT_EQ(r.exit_code, 0) << r.err;
     const std::string text = slurp(unit);
     EXPECT_THAT(text, HasSubstr("Type=notify\n"));
     EXPECT_THAT(text, HasSubstr("door $$1 100%%.seam\" \"--watch\" \"--push\""));
     EXPECT_THAT(text, HasSubstr("WatchdogSec="));
+    EXPECT_THAT(text, HasSubstr("\"--fleet\" \"postgresql://seam@db/fleet\" \"--station\" \"line 2\""));
     if (std::filesystem::exists("/usr/bin/systemd-analyze")) {
         const std::string verify = "systemd-analyze verify --man=no '" + unit.string() + "' >'" +
                                    (folder / "said").string() + "' 2>&1";
         EXPECT_EQ(std::system(verify.c_str()), 0) << slurp(folder / "said");
     }
     refused({"service", folder / "none.seam"}, "none.seam", 3);
+    refused({"service", file.string(), "--fleet", "postgresql://seam:secret@db/fleet"},
+            "no place for a password");
     refused({"service", file.string(), "--user", "a b\nExecStart=x"}, "no user's name");
 }
 

@@ -3,6 +3,7 @@
 
 #include <QApplication>
 #include <QLabel>
+#include <QMouseEvent>
 #include <QScrollArea>
 #include <QTest>
 #include <QVBoxLayout>
@@ -229,6 +230,34 @@ TEST(Gallery, Scene) {
     QTest::qWait(100);
     EXPECT_LE(view.pictures_rendered() - before, 8);
     EXPECT_GE(view.pictures_rendered() - before, 1);
+    // A line around two spots, with the right button or after begin_lasso(), names them; the part is not turned.
+    view.show_view(SceneView::View::front);
+    QTest::qWait(80);
+    QStringList encircled;
+    QObject::connect(&view, &SceneView::spots_encircled, [&](const QStringList& ids) { encircled = ids; });
+    const auto around = [&](Qt::MouseButton button) {
+        encircled.clear();
+        QWidget* on = view.focusProxy();
+        const QPointF middle = view.to_screen(spots[2].workobject_from_sensor * spots[2].reference_mm);
+        const auto at = [&](double dx, double dy) {
+            return on->mapFrom(&view, middle + QPointF(dx, dy)).toPoint();
+        };
+        QTest::mousePress(on, button, {}, at(-14, -14));
+        for (const QPoint p : {at(14, -14), at(14, 14), at(-14, 14)}) {
+            QMouseEvent move(QEvent::MouseMove, p, on->mapToGlobal(p), Qt::NoButton, button, {});
+            QApplication::sendEvent(on, &move);
+        }
+        QTest::mouseRelease(on, button, {}, at(-14, 14));
+        return middle;
+    };
+    const QPointF before_lasso = around(Qt::RightButton);
+    EXPECT_TRUE(encircled.contains(QString::fromStdString(spots[2].id)));
+    EXPECT_LT(encircled.size(), static_cast<qsizetype>(spots.size()));
+    view.begin_lasso();
+    EXPECT_EQ(around(Qt::LeftButton), before_lasso) << "the view has not been turned";
+    EXPECT_TRUE(encircled.contains(QString::fromStdString(spots[2].id)));
+    around(Qt::LeftButton);
+    EXPECT_TRUE(encircled.isEmpty()) << "once";
     // A click on a spot selects it.
     QString picked;
     QObject::connect(&view, &SceneView::spot_picked, [&](const QString& id) { picked = id; });

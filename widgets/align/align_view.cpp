@@ -80,7 +80,7 @@ AlignView::AlignView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
     auto* lower_column = new QVBoxLayout(lower);
     lower_column->setContentsMargins(0, 0, 0, 0);
     lower_column->setSpacing(0);
-    auto* head = new ViewBar(lower, tr("Profiles over travel"));
+    auto* head = new ViewBar(lower);  // without a caption its buttons keep one line; the axes say what it is
     auto* group = new QButtonGroup(this);
     impl_->as_image = head->add(
         tr("Image"), tr("x to the right, travel upwards, height as colour: upright bands stand still"), true);

@@ -91,7 +91,8 @@ Expected<void> CalibrationDesk::open(const MethodId& method, const SensorId& sen
     for (const Text& notice : session_->notices()) emit refused(shown(notice));
     if (session_->state().captures.empty())
         if (auto settings = prepared_settings(session_->method(), session_->state().settings, base(),
-                                              desk_.project().calibrations);
+                                              desk_.project().calibrations,
+                                              find_robot(desk_.project(), session_->robot_id()));
             settings && *settings != session_->state().settings)
             (void)session_->set_settings(std::move(*settings));
     emit changed();

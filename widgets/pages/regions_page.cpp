@@ -3,6 +3,7 @@
 #include <QInputDialog>
 #include <cmath>
 
+#include "core/geometry/three_two_one.h"
 #include "projects/measure/fields.h"
 #include "projects/measure/measure.h"
 #include "projects/proof/forecast.h"
@@ -40,16 +41,21 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
                           [this] {
                               if (region()) done(desk_.remove<Region>(region()->id));
                           });
-    box().addLayout(make_row({make_button("add_region", "add", tr("Add region"), tr("A further region"),
-                                          [this] {
-                                              Region r;
-                                              r.id = desk_.free_id<Region>("Region");
-                                              r.frame_name = "BASE_" + r.id;
-                                              r.base_from_frame = desk_.project().part.base_from_workobject;
-                                              const std::string id = r.id;
-                                              if (done(desk_.add(r))) desk_.selection().select_region(id);
-                                          }),
-                              rename_, remove_}));
+    box().addLayout(make_row(
+        {make_button("add_region", "add", tr("Add region"), tr("A further region"),
+                     [this] { add_region({}); }),
+         make_button(
+             "encircle", "pick", tr("Encircle spots"),
+             tr("Draw a line around spots in the 3D view: they become the chosen region's, or a region of "
+                "their own where none is chosen. The right mouse button does the same at any time."),
+             [this] {
+                 views_.raise(views_.scene);
+                 views_.scene->begin_lasso();
+             }),
+         rename_, remove_}));
+    connect(views.scene, &SceneView::spots_encircled, this, [this](const QStringList& ids) {
+        if (isVisible()) take_encircled(ids);
+    });
     add_list_deed(*list_, *rename_, Qt::Key_F2);
     add_list_deed(*list_, *remove_, QKeySequence::Delete);
     inspector_ = new QWidget;
@@ -139,6 +145,18 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
     });
     in->addWidget(frame_pose_);
 
+    in->addLayout(
+        make_row({make_button("pick_frame", "pick", tr("Pick 3-2-1 on the part"),
+                              tr("Six clicks on the part in 3D: three on a plane, two along X, one for the "
+                                 "origin; the frame goes there"),
+                              [this] { pick_frame(); })}));
+    pick_said_ = make_text({});
+    pick_said_->setObjectName("pick_said");
+    in->addWidget(pick_said_);
+    connect(views.scene, &SceneView::part_picked, this, [this](double x, double y, double z) {
+        if (isVisible()) picked({x, y, z});
+    });
+
     in->addWidget(make_heading(tr("Limits")));
     for (const Field<Region>& f : region_fields()) {
         auto* editor = new ParameterEditor(f.info);
@@ -160,6 +178,67 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
                           });
     in->addLayout(make_row({proven_}));
     box().addStretch(1);
+}
+
+void RegionsPage::add_region(std::vector<std::string> spot_ids) {
+    Region r;
+    r.id = desk_.free_id<Region>("Region");
+    r.frame_name = "BASE_" + r.id;
+    r.base_from_frame = desk_.project().part.base_from_workobject;
+    r.spot_ids = std::move(spot_ids);
+    const std::string id = r.id;
+    if (done(desk_.add(r))) desk_.selection().select_region(id);
+}
+
+void RegionsPage::take_encircled(const QStringList& ids) {
+    if (ids.isEmpty()) return;
+    std::vector<std::string> spots;
+    for (const QString& id : ids) spots.push_back(id.toStdString());
+    if (!region()) return add_region(std::move(spots));
+    Region r = *region();
+    r.spot_ids = std::move(spots);
+    done(desk_.edit(r, tr("spots")));
+}
+
+void RegionsPage::pick_frame() {
+    picking_ = !picking_;
+    picks_.clear();
+    views_.scene->set_picks(picks_);
+    views_.raise(views_.scene);
+    say_pick();
+}
+
+void RegionsPage::say_pick() {
+    if (!picking_) return pick_said_->clear();
+    if (desk_.project().part.mesh_ply.empty())
+        return set_verdict(*pick_said_, tr("There is no part to click on: step 1, Cell, imports its mesh."),
+                           Tone::attention);
+    const std::size_t n = picks_.size();
+    const QString what =
+        n < 3   ? tr("click point %1 of 3 of the plane, counter-clockwise seen from above").arg(n + 1)
+        : n < 5 ? tr("click point %1 of 2 along X").arg(n - 2)
+                : tr("click the point beside which the origin lies");
+    set_verdict(*pick_said_, tr("Frame by 3-2-1: %1.").arg(what), Tone::plain);
+}
+
+void RegionsPage::picked(const Eigen::Vector3d& workobject_mm) {
+    if (!picking_ || !region()) return;
+    picks_.push_back(workobject_mm);
+    views_.scene->set_picks(picks_);
+    say_pick();
+    constexpr std::size_t kPicks = 6;
+    if (picks_.size() < kPicks) return;
+    const auto frame =
+        frame_by_three_two_one({picks_[0], picks_[1], picks_[2]}, {picks_[3], picks_[4]}, picks_[5]);
+    picking_ = false;
+    picks_.clear();
+    views_.scene->set_picks(picks_);
+    if (!frame) return set_verdict(*pick_said_, shown_error(frame.error()), Tone::attention);
+    Region r = *region();
+    r.base_from_frame = desk_.project().part.base_from_workobject * *frame;
+    if (done(desk_.edit(r, tr("frame"))))
+        set_verdict(*pick_said_, tr("The frame stands where it was picked; undo brings the old one back."),
+                    Tone::good);
 }
 
 void RegionsPage::entered() {

@@ -25,6 +25,12 @@ class RegionsPage : public StepPage {
   private:
     const Region* region() const;
     void show_plan(const Region& region);
+    void add_region(std::vector<std::string> spot_ids);
+    void take_encircled(const QStringList& ids);
+    // The frame by 3-2-1 from places that are clicked on the part (core/geometry/three_two_one.h).
+    void pick_frame();
+    void picked(const Eigen::Vector3d& workobject_mm);
+    void say_pick();
     QListWidget *list_, *spots_;
     QPushButton *proven_ = nullptr, *rename_, *remove_;
     QWidget* inspector_;
@@ -35,6 +41,9 @@ class RegionsPage : public StepPage {
     QLabel *verdict_, *advice_;
     QTableWidget* plan_;
     BudgetPanel* budget_;
+    QLabel* pick_said_;
+    bool picking_ = false;
+    std::vector<Eigen::Vector3d> picks_;
     bool filling_ = false;
 };
 

@@ -13,6 +13,9 @@
 #include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "widgets/style.h"
 
 namespace seamwright {
 
@@ -132,6 +135,14 @@ void SceneCanvas::paintEvent(QPaintEvent*) {
     else
         painter.drawImage(rect(), picture_);
     if (on_paint) on_paint(painter);
+    if (drawn_.size() > 1) {
+        painter.setRenderHint(QPainter::Antialiasing);
+        painter.setPen(QPen(style::selection(palette()), 2));
+        QColor inside = style::selection(palette());
+        inside.setAlpha(40);
+        painter.setBrush(inside);
+        painter.drawPolygon(drawn_);
+    }
 }
 
 void SceneCanvas::show_view(SceneView::View view) {
@@ -206,6 +217,8 @@ std::optional<Eigen::Vector3d> SceneCanvas::pick(const QPointF& at, vtkActor& ac
 void SceneCanvas::mousePressEvent(QMouseEvent* event) {
     press_ = last_ = event->position();
     dragged_ = false;
+    drawn_.clear();
+    if (event->button() == Qt::RightButton || (lasso && event->button() == Qt::LeftButton)) drawn_ << press_;
 }
 
 void SceneCanvas::mouseMoveEvent(QMouseEvent* event) {
@@ -214,6 +227,10 @@ void SceneCanvas::mouseMoveEvent(QMouseEvent* event) {
     dragged_ = dragged_ || (at - press_).manhattanLength() > 4;
     if (!dragged_) return;
     last_ = at;
+    if (!drawn_.isEmpty()) {
+        drawn_ << at;
+        return update();
+    }
     vtkCamera* camera = renderer_->GetActiveCamera();
     const bool move = (event->buttons() & Qt::MiddleButton) ||
                       ((event->buttons() & Qt::LeftButton) && (event->modifiers() & Qt::ShiftModifier));
@@ -240,6 +257,11 @@ void SceneCanvas::mouseMoveEvent(QMouseEvent* event) {
 }
 
 void SceneCanvas::mouseReleaseEvent(QMouseEvent* event) {
+    const QPolygonF drawn = std::exchange(drawn_, {});
+    if (dragged_ && drawn.size() > 2) {
+        update();
+        if (on_encircled) on_encircled(drawn);
+    }
     if (!dragged_ && event->button() == Qt::LeftButton && on_click) on_click(event->position());
 }
 

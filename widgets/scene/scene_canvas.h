@@ -14,6 +14,7 @@
 #include <QImage>
 #include <QOffscreenSurface>
 #include <QOpenGLContext>
+#include <QPolygonF>
 #include <QTimer>
 #include <QWidget>
 #include <functional>
@@ -40,6 +41,9 @@ class SceneCanvas : public QWidget {
     // Where the ray through a pixel meets the actor.
     std::optional<Eigen::Vector3d> pick(const QPointF& at, vtkActor& actor);
     std::function<void(const QPointF&)> on_click;
+    // A line drawn around something: with the right button, or with the left one while `lasso` is set.
+    std::function<void(const QPolygonF&)> on_encircled;
+    bool lasso = false;
     std::function<void(QPainter&)> on_paint;  // over the picture
     int rendered = 0;
     vtkActor* part = nullptr;  // what the views are fitted to, while it shows
@@ -63,6 +67,7 @@ class SceneCanvas : public QWidget {
     QTimer timer_;
     QElapsedTimer since_;
     QPointF press_, last_;
+    QPolygonF drawn_;  // the line so far; empty: none is drawn
     bool ready_ = false, stale_ = true, dragged_ = false;
 };
 

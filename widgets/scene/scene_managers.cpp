@@ -75,6 +75,23 @@ void ScenePainter::arrow(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
     }
 }
 
+void ScenePainter::tube(const Eigen::Vector3d& a, double a_radius, const Eigen::Vector3d& b, double b_radius,
+                        const QColor& with) {
+    const Eigen::Vector3d along = b - a;
+    if (!(along.norm() > 1e-9) || !std::isfinite(a_radius) || !std::isfinite(b_radius)) return;
+    const Eigen::Vector3d u = along.normalized(), side = u.unitOrthogonal(), other = u.cross(side);
+    constexpr int kSides = 8;
+    for (int i = 0; i < kSides; ++i) {
+        const auto around = [&](int k) {
+            const double angle = 2 * kPi * k / kSides;
+            return Eigen::Vector3d(std::cos(angle) * side + std::sin(angle) * other);
+        };
+        const Eigen::Vector3d p = around(i), q = around(i + 1);
+        triangle(a + a_radius * p, a + a_radius * q, b + b_radius * q, with);
+        triangle(a + a_radius * p, b + b_radius * q, b + b_radius * p, with);
+    }
+}
+
 void ScenePainter::axes(const Pose& pose, double length, double thickness, int alpha) {
     const QRgb colours[3] = {style::kVermilion, style::kBluishGreen, style::kBlue};  // x, y, z
     for (int i = 0; i < 3; ++i)
@@ -285,22 +302,52 @@ vtkSmartPointer<vtkPolyData> draw_corrections(const std::vector<SceneSpot>& spot
     return painter.take();
 }
 
+std::vector<Eigen::Vector3d> drawn_path(const ScenePath& path, double scale) {
+    std::vector<Eigen::Vector3d> drawn = path.after_mm;
+    if (path.after_mm.size() != path.before_mm.size()) return drawn;
+    // The same exaggeration as the arrows, or a millimetre would not be seen on a metre.
+    for (std::size_t i = 0; i < drawn.size(); ++i)
+        drawn[i] = path.before_mm[i] + scale * (path.after_mm[i] - path.before_mm[i]);
+    return drawn;
+}
+
+std::optional<WorstPathPoint> worst_of(const ScenePath& path) {
+    if (path.after_mm.empty() || path.after_mm.size() != path.before_mm.size()) return std::nullopt;
+    WorstPathPoint worst;
+    for (std::size_t i = 0; i < path.after_mm.size(); ++i) {
+        const double shift = (path.after_mm[i] - path.before_mm[i]).norm();
+        if (!(shift > worst.shift_mm)) continue;
+        worst = {i, shift, i < path.sigma_mm.size() ? path.sigma_mm[i] : 0};
+    }
+    return worst;
+}
+
 vtkSmartPointer<vtkPolyData> draw_path(const ScenePath& path, double scale, const QPalette& palette) {
     ScenePainter painter;
-    const auto polyline = [&](const std::vector<Eigen::Vector3d>& points, const QColor& colour) {
-        for (std::size_t i = 1; i < points.size(); ++i) painter.line(points[i - 1], points[i], colour);
-        if (path.closed && points.size() > 2) painter.line(points.back(), points.front(), colour);
+    const auto segments = [&](std::size_t points, const auto& draw) {
+        for (std::size_t i = 1; i < points; ++i) draw(i - 1, i);
+        if (path.closed && points > 2) draw(points - 1, std::size_t{0});
     };
-    polyline(path.before_mm, style::axis(palette));
-    if (path.after_mm.size() != path.before_mm.size()) {
-        polyline(path.after_mm, style::attention(palette));
-    } else {
-        // The same exaggeration as the arrows, or a millimetre would not be seen on a metre.
-        std::vector<Eigen::Vector3d> after = path.after_mm;
-        for (std::size_t i = 0; i < after.size(); ++i)
-            after[i] = path.before_mm[i] + scale * (path.after_mm[i] - path.before_mm[i]);
-        polyline(after, style::attention(palette));
-    }
+    segments(path.before_mm.size(), [&](std::size_t a, std::size_t b) {
+        painter.line(path.before_mm[a], path.before_mm[b], style::axis(palette));
+    });
+    const std::vector<Eigen::Vector3d> after = drawn_path(path, scale);
+    const auto worst = worst_of(path);
+    const auto colour = [&](std::size_t i) {
+        if (!worst || !(worst->shift_mm > 0)) return style::attention(palette);
+        const double share = (path.after_mm[i] - path.before_mm[i]).norm() / worst->shift_mm;
+        const QColor least = QColor::fromRgb(style::kSkyBlue), most = QColor::fromRgb(style::kVermilion);
+        const auto mixed = [&](int a, int b) { return static_cast<int>(std::lround(a + share * (b - a))); };
+        return QColor(mixed(least.red(), most.red()), mixed(least.green(), most.green()),
+                      mixed(least.blue(), most.blue()));
+    };
+    constexpr int kTubeAlpha = 70;
+    segments(after.size(), [&](std::size_t a, std::size_t b) {
+        painter.line(after[a], after[b], colour(a));
+        if (path.sigma_mm.size() == after.size())
+            painter.tube(after[a], 3 * scale * path.sigma_mm[a], after[b], 3 * scale * path.sigma_mm[b],
+                         faded(colour(a), kTubeAlpha));
+    });
     return painter.take();
 }
 

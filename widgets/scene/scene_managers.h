@@ -8,6 +8,7 @@
 
 #include <QColor>
 #include <QPalette>
+#include <optional>
 #include <vector>
 
 #include "widgets/scene/scene_view.h"
@@ -24,6 +25,9 @@ class ScenePainter {
     // A shaft with a four-sided head, `thickness` across the shaft.
     void arrow(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double thickness,
                const QColor& colour);
+    // Open at both ends, as wide as the two radii.
+    void tube(const Eigen::Vector3d& a, double a_radius, const Eigen::Vector3d& b, double b_radius,
+              const QColor& colour);
     void axes(const Pose& pose, double length, double thickness, int alpha = 255);
     void ball(const Eigen::Vector3d& centre, double radius, const QColor& colour);
     void box(const Pose& pose, const Eigen::Vector3d& low, const Eigen::Vector3d& high, const QColor& colour);
@@ -59,6 +63,14 @@ vtkSmartPointer<vtkPolyData> draw_regions(const std::vector<SceneRegion>& region
                                           const QPalette& palette);
 vtkSmartPointer<vtkPolyData> draw_corrections(const std::vector<SceneSpot>& spots, double scale,
                                               const QPalette& palette);
+// Where the corrected points are drawn: as far from the taught ones as `scale` times the truth, where both are as many.
+std::vector<Eigen::Vector3d> drawn_path(const ScenePath& path, double scale);
+// The point that moves most; nullopt: before and after are not as many.
+struct WorstPathPoint {
+    std::size_t point = 0;
+    double shift_mm = 0, sigma_mm = 0;
+};
+std::optional<WorstPathPoint> worst_of(const ScenePath& path);
 vtkSmartPointer<vtkPolyData> draw_path(const ScenePath& path, double scale, const QPalette& palette);
 vtkSmartPointer<vtkPolyData> draw_robot(const std::optional<SceneRobot>& robot,
                                         const std::optional<SceneRobot>& next, const QPalette& palette);

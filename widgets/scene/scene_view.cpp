@@ -112,6 +112,7 @@ struct SceneView::Impl {
     std::vector<SceneSpot> spots;
     std::vector<SceneRegion> regions;
     ScenePath path;
+    std::vector<Eigen::Vector3d> picks;
     std::optional<SceneRobot> robot, next_robot;
     Pose part_shift = Pose::Identity();
     std::string spot, region;
@@ -225,6 +226,20 @@ SceneLabels SceneView::Impl::words() const {
                 words.labels.push_back(
                     {{at.x(), at.y()}, SceneView::tr("next pose"), style::selection(palette), true});
         }
+        for (std::size_t i = 0; i < picks.size(); ++i) {
+            const Eigen::Vector3d at = canvas->project(picks[i]);
+            if (at.z() <= 1)
+                words.labels.push_back(
+                    {{at.x(), at.y()}, QString::number(i + 1), style::selection(palette), true});
+        }
+        if (const auto worst = worst_of(path); worst && shown.at(Layer::path)) {
+            const Eigen::Vector3d at = canvas->project(drawn_path(path, scale)[worst->point]);
+            QString text = SceneView::tr("moved %1 mm").arg(worst->shift_mm, 0, 'f', 2);
+            if (worst->sigma_mm > 0)
+                text += SceneView::tr(", 3 sigma %1 mm").arg(3 * worst->sigma_mm, 0, 'f', 3);
+            if (at.z() <= 1)
+                words.labels.push_back({{at.x(), at.y()}, text, style::attention(palette), true});
+        }
         if (shown.at(Layer::regions))
             for (const SceneRegion& one : regions) {
                 const auto weak = weak_arrow(one, spots);
@@ -250,7 +265,9 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
     setObjectName("scene_view");
     setAccessibleName(tr("Part in 3D"));
     setToolTip(
-        tr("Drag turns, Shift and drag moves, wheel zooms, a click selects. 1 front, 2 top, 3 iso, F fit."));
+        tr("Drag turns, Shift and drag moves, wheel zooms, a click selects, a drag with the right button "
+           "encircles "
+           "spots. 1 front, 2 top, 3 iso, F fit."));
     // Before the buttons: Tab goes from the view to the canvas that has its focus, and on from there.
     if (opengl_available()) impl_->canvas = new SceneCanvas(this);
     auto* bar = new ViewBar(this, tr("Part"));
@@ -308,6 +325,18 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
             const std::string id = nearest ? nearest->id : std::string();
             if (id != impl_->spot) select_spot(id);
             emit spot_picked(QString::fromStdString(id));
+        };
+        impl_->canvas->on_encircled = [this](const QPolygonF& line) {
+            impl_->canvas->lasso = false;
+            impl_->canvas->unsetCursor();
+            QStringList ids;
+            for (const SceneSpot& spot : impl_->spots) {
+                const Eigen::Vector3d p =
+                    impl_->canvas->project(spot.workobject_from_sensor * spot.reference_mm);
+                if (p.z() <= 1 && line.containsPoint({p.x(), p.y()}, Qt::OddEvenFill))
+                    ids << QString::fromStdString(spot.id);
+            }
+            emit spots_encircled(ids);
         };
         show_view(View::iso);
     } else {
@@ -374,6 +403,7 @@ void SceneView::set_regions(const std::vector<SceneRegion>& regions) {
 }
 
 void SceneView::set_path(const ScenePath& path) {
+    if (impl_->path == path) return;
     impl_->path = path;
     impl_->redraw(Layer::path);
 }
@@ -390,6 +420,11 @@ void SceneView::set_next_robot(const std::optional<SceneRobot>& next) {
     impl_->redraw(Layer::robot);
     if (goes) show_view(View::fit);
     if (appears && impl_->canvas) impl_->canvas->fit(impl_->manager(Layer::robot)->actor());
+}
+
+void SceneView::set_picks(const std::vector<Eigen::Vector3d>& picks_mm) {
+    impl_->picks = picks_mm;
+    impl_->changed();
 }
 
 void SceneView::set_correction_scale(double factor) {
@@ -413,6 +448,12 @@ void SceneView::select_region(const std::string& id) {
 
 std::string SceneView::selected_spot() const {
     return impl_->spot;
+}
+
+void SceneView::begin_lasso() {
+    if (!impl_->canvas) return;
+    impl_->canvas->lasso = true;
+    impl_->canvas->setCursor(Qt::CrossCursor);
 }
 
 void SceneView::show_view(View view) {

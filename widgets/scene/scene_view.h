@@ -3,7 +3,7 @@
 //
 // Frame: work object, millimetres. All poses are workobject_from_... Managers (scene_managers.h) alone touch
 // actors; the view hands them values. Render requests are coalesced: at most 60 pictures a second, none when
-// nothing changed. Mouse: left drag turns, middle or Shift+left moves, wheel zooms, a click picks. Keys: 1
+// nothing changed. Mouse: left drag turns, middle or Shift+left moves, wheel zooms, a click picks, right drag encircles. Keys: 1
 // front, 2 top, 3 iso, F fit, Escape selects nothing. Without OpenGL 3.2 (remote desktop, broken driver) a
 // sentence takes the picture's place and everything else works.
 
@@ -42,9 +42,13 @@ struct SceneRegion {
     std::string weak_text;  // "weakest: along X, 0.4 mm"
 };
 
+// Coloured by how far each point moves, from the least (sky blue) to the most (vermilion) of this path; the numbers stand at
+// its worst point. Around it a tube of 3 sigma, as exaggerated as the shift.
 struct ScenePath {
     std::vector<Eigen::Vector3d> before_mm, after_mm;  // as taught; as corrected
     bool closed = false;
+    std::vector<double> sigma_mm = {};  // of the corrected points; empty: no tube
+    bool operator==(const ScenePath&) const = default;
 };
 
 struct SceneRobot {
@@ -80,6 +84,8 @@ class SceneView : public QWidget {
     // Where the robot is to go next, half transparent beside where it stands; belongs to the robot's layer.
     // When one appears, the picture is fitted to both; when it goes, to the part again.
     void set_next_robot(const std::optional<SceneRobot>& next);
+    // Places of the part that were picked so far, numbered from 1.
+    void set_picks(const std::vector<Eigen::Vector3d>& picks_mm);
     void set_correction_scale(double factor);  // drawn length / true length, 1..1000; default 20
 
     // From outside; "" selects nothing. No signal is sent for it.
@@ -87,6 +93,8 @@ class SceneView : public QWidget {
     void select_region(const std::string& id);
     std::string selected_spot() const;
 
+    // The next drag draws a line around spots instead of turning the part; the right button does so always.
+    void begin_lasso();
     void show_view(View view);
     void set_layer(Layer layer, bool shown);
     bool layer(Layer layer) const;
@@ -103,6 +111,7 @@ class SceneView : public QWidget {
   signals:
     void spot_picked(QString id);                    // "" = nothing there
     void part_picked(double x, double y, double z);  // work object, mm
+    void spots_encircled(QStringList ids);           // in the order of measuring; may be none
 
   protected:
     void changeEvent(QEvent* event) override;

@@ -53,10 +53,7 @@ Expected<void> check_noise(const NozzleOptions& options) {
     if (options.sigma_mm && !(*options.sigma_mm >= 1e-4 && *options.sigma_mm <= 10))
         return input_error("the sigma of a touch is not between 0.0001 and 10 mm", "sigma_mm",
                            "give it in millimetres, or leave it out: the scatter tells it");
-    if (!(options.robot_mm >= 0 && options.robot_mm <= 10) ||
-        !(options.robot_rad >= 0 && options.robot_rad <= 0.2))
-        return input_error("the robot's repeatability is none", "robot",
-                           "give 0 to 10 mm and 0 to 10 degrees, one standard deviation");
+    SEAM_OK(check_repeatability(options.robot));
     if (options.programmed) SEAM_OK(check_rigid({*options.programmed}, {"tool"}, "programmed"));
     return {};
 }
@@ -112,8 +109,8 @@ TouchSet set_of(const std::vector<NozzleTouch>& touches, const std::vector<std::
     set.half = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
     set.rho_mm = target.radius_mm.value_or(0) + options.tip_radius_mm;
     set.spread_mm = set.sphere ? target.radius_sigma_mm : 0;
-    set.robot_mm = options.robot_mm;
-    set.robot_rad = options.robot_rad;
+    set.robot_mm = options.robot.sigma_mm;
+    set.robot_rad = options.robot.sigma_rad;
     set.sigma_mm = options.sigma_mm;
     if (options.programmed) set.near = options.programmed->translation();
     return set;

@@ -35,6 +35,7 @@
 #include <vector>
 
 #include "core/calibration/calibration.h"
+#include "core/calibration/robot_repeatability.h"
 #include "core/geometry/pose.h"
 
 namespace seamwright {
@@ -54,9 +55,9 @@ struct NozzleTarget {
 
 struct NozzleOptions {
     std::vector<std::string> exclude;
-    std::optional<double> sigma_mm;      // of a touch; absent: estimated from the scatter
-    double tip_radius_mm = 0;            // of a ball at the tip; with a sphere only
-    double robot_mm = 0, robot_rad = 0;  // repeatability an axis, and about each axis of the flange
+    std::optional<double> sigma_mm;  // of a touch; absent: estimated from the scatter
+    double tip_radius_mm = 0;        // of a ball at the tip; with a sphere only
+    RobotRepeatability robot;
     bool thorough = true;  // without: no touch is found wrong, none held out; for ranking conventions
     std::optional<Pose> programmed;  // flange_from_tool as the controller has it
 };

@@ -65,10 +65,13 @@ Expected<void> check_passes(const std::vector<EdgePass>& passes, const OnPartOpt
     SEAM_OK(check_millimetres(poses, "passes"));
     if (options.latency_s && !(std::abs(*options.latency_s) <= 1))
         return input_error("the latency is beyond one second", "latency", "give it in seconds");
-    if (options.robot && !(options.robot->sigma_mm > 0 && options.robot->sigma_mm < 10 &&
-                           options.robot->sigma_rad > 0 && options.robot->sigma_rad < 0.1))
-        return input_error("the robot's repeatability is none", "robot",
-                           "give sigma_mm and sigma_deg, both above zero");
+    if (options.robot) {
+        SEAM_OK(check_repeatability(*options.robot));
+        // What is stated replaces the estimate, so a turn that is left out would count as exact.
+        if (!(options.robot->sigma_mm > 0 && options.robot->sigma_rad > 0))
+            return input_error("the robot's repeatability is stated in part", "robot",
+                               "give sigma_mm and sigma_deg, both above zero");
+    }
     if (options.prior) {
         SEAM_OK(pose_from_matrix(options.prior->flange_from_sensor.matrix(), "prior"));
         const Matrix6& c = options.prior->covariance;

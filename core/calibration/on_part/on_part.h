@@ -38,6 +38,7 @@
 #include <vector>
 
 #include "core/calibration/calibration.h"
+#include "core/calibration/robot_repeatability.h"
 #include "core/geometry/pose.h"
 
 namespace seamwright {
@@ -58,14 +59,11 @@ struct MountingPrior {
     Pose flange_from_sensor = Pose::Identity();
     Matrix6 covariance = Matrix6::Zero();  // tangent of pose.h
 };
-struct RobotRepeatability {
-    double sigma_mm = 0, sigma_rad = 0;  // of one pass, each axis, at the flange
-};
 
 struct OnPartOptions {
     std::optional<MountingPrior> prior;
     std::optional<double> latency_s;          // fixed; absent: solved for
-    std::optional<RobotRepeatability> robot;  // absent: estimated from how the passes differ
+    std::optional<RobotRepeatability> robot;  // of one pass; absent: estimated from how the passes differ
     std::vector<std::string> exclude;         // passes
 };
 

@@ -242,9 +242,11 @@ std::string_view name_of(HandEyeStatus status) {
 }
 
 Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEyePair>& pairs,
-                                           const std::vector<std::string>& exclude) {
+                                           const std::vector<std::string>& exclude,
+                                           const RobotRepeatability& robot) {
     std::vector<bool> used;
     SEAM_OK(check_input(pairs, exclude, used));
+    SEAM_OK(check_repeatability(robot));
     Chain chain = chain_of(mount, pairs, used);
     const std::vector<bool> wanted = used;
 
@@ -278,10 +280,10 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
     scales = solve(chain, x, y, scales);
     leave_out_wrong_pairs(chain, x, y, scales);
 
-    std::vector<Pose> robot;
+    std::vector<Pose> flanges;
     for (size_t i = 0; i < pairs.size(); ++i)
-        if (chain.used[i]) robot.push_back(pairs[i].base_from_flange);
-    result.degenerate = degenerate_words(robot);
+        if (chain.used[i]) flanges.push_back(pairs[i].base_from_flange);
+    result.degenerate = degenerate_words(flanges);
     const Determination known = determination(chain, x, y, scales);
     report.poses.resize(pairs.size());
     for (size_t i = 0; i < pairs.size(); ++i) {
@@ -324,7 +326,7 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
     }
 
     result.status = HandEyeStatus::ok;
-    const Weighed weighed = weigh(chain, mount == Mount::eye_to_hand, x, y, scales);
+    const Weighed weighed = weigh(chain, mount == Mount::eye_to_hand, robot, x, y, scales);
     x = result.x = weighed.x;
     y = result.y = weighed.y;
     state_rms(chain, x, y, result);

@@ -22,7 +22,7 @@
 //
 // Noise model: pairs independent; each errs across the sight of the target, along it, in tilt and in turn, and with the
 // robot's turn, by five variances that are estimated. Covariances hold what this estimating adds: value +- 1.96 sigma
-// holds 95 %.
+// holds 95 %. A stated repeatability of the robot is a part of every pair's error beside them that is not estimated.
 // Degenerate: one orientation (X's translation is free), rotations about one axis (translation along it and
 // the turn about it are free): status undetermined, in words. A pair that the others contradict is found,
 // named and left out.
@@ -32,6 +32,7 @@
 #include <vector>
 
 #include "core/calibration/calibration.h"
+#include "core/calibration/robot_repeatability.h"
 #include "core/geometry/pose.h"
 
 namespace seamwright {
@@ -67,8 +68,10 @@ struct HandEyeResult {
     CalibrationReport report;  // parameters x y z [mm] rx ry rz [deg] of X, then target_* of Y
 };
 
-// Bad input (fewer than three different pairs, metres, NaN, unknown id to exclude) is an Error.
+// Bad input (fewer than three different pairs, metres, NaN, unknown id to exclude, a repeatability that is none) is an
+// Error.
 Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEyePair>& pairs,
-                                           const std::vector<std::string>& exclude = {});
+                                           const std::vector<std::string>& exclude = {},
+                                           const RobotRepeatability& robot = {});
 
 }  // namespace seamwright

@@ -23,22 +23,22 @@ constexpr double kRobotStart = 0.1;
 constexpr double kPriorWeight = 0.1;
 constexpr double kPriorLog = 3;  // sigma of a variance's logarithm, before the pairs
 constexpr double kFewestFreedom = 3;
+constexpr double kLeastLeft = 0.02;  // of the isotropic variance, beside a stated robot
 
 // All in units of the isotropic scales.
 class PairNoise {
   public:
-    PairNoise(const Chain& chain, bool robot_outside, const Scales& scales)
-        : chain_(chain), robot_outside_(robot_outside), scales_(scales) {
+    PairNoise(const Chain& chain, bool robot_outside, const RobotRepeatability& robot, const Scales& scales)
+        : chain_(chain), robot_outside_(robot_outside), robot_(robot), scales_(scales) {
         const std::size_t kinds = chain.used_count() < kFewestForFive ? 2 : 5;
         variance_.assign(kinds, 1);
-        if (kinds == 5) variance_.back() = kRobotStart;
-        start_ = variance_;
     }
 
     Weighed run(Pose x, Pose y) {
         for (int round = 0; round < 3; ++round) {
             at_ = linearise_pairs(chain_, x, y, scales_);
             shape(x, y);
+            if (round == 0) begin();
             for (int step = 0; step < kSteps; ++step) {
                 weigh();
                 if (!next_variances()) break;
@@ -57,6 +57,20 @@ class PairNoise {
     }
 
   private:
+    // What the stated robot leaves of the isotropic variance for the others to begin with.
+    void begin() {
+        double mm = 0, rad = 0;
+        for (const Matrix6& k : known_) {
+            mm += k.topLeftCorner<3, 3>().trace() / 3 / static_cast<double>(known_.size());
+            rad += k.bottomRightCorner<3, 3>().trace() / 3 / static_cast<double>(known_.size());
+        }
+        const double left_mm = std::max(1 - mm, kLeastLeft), left_rad = std::max(1 - rad, kLeastLeft);
+        if (variance_.size() == 2)
+            start_ = {left_mm, left_rad};
+        else
+            start_ = {left_mm, left_mm, left_rad, left_rad, kRobotStart * std::min(left_mm, left_rad)};
+        variance_ = start_;
+    }
     std::size_t count() const { return chain_.used_count(); }
     Rows jacobian(std::size_t i) const {
         return at_.jacobian.middleRows<6>(static_cast<Eigen::Index>(6 * i));
@@ -65,13 +79,25 @@ class PairNoise {
         return at_.residuals.segment<6>(static_cast<Eigen::Index>(6 * i));
     }
 
-    // The parts of each pair's covariance.
+    // The parts of each pair's covariance, and what of it is known.
     void shape(const Pose& x, const Pose& y) {
         parts_.clear();
+        known_.clear();
         const double lever = scales_.rad / scales_.mm;
         for (std::size_t i = 0; i < chain_.size(); ++i) {
             if (!chain_.used[i]) continue;
             std::vector<Matrix6> part(variance_.size(), Matrix6::Zero());
+            Eigen::Matrix<double, 6, 3> turned;  // by a turn of the flange
+            if (robot_outside_) {
+                turned.topRows<3>() = -lever * skew(y.translation());
+                turned.bottomRows<3>() = y.linear().transpose();
+            } else {
+                turned.topRows<3>() = -lever * chain_.a[i].linear() * skew(x * chain_.c[i].translation());
+                turned.bottomRows<3>() = (x.linear() * chain_.c[i].linear()).transpose();
+            }
+            Matrix6 stated = std::pow(robot_.sigma_rad / scales_.rad, 2) * turned * turned.transpose();
+            stated.topLeftCorner<3, 3>().diagonal().array() += std::pow(robot_.sigma_mm / scales_.mm, 2);
+            known_.push_back(stated);
             if (variance_.size() == 2) {
                 part[0].topLeftCorner<3, 3>().setIdentity();
                 part[1].bottomRightCorner<3, 3>().setIdentity();
@@ -82,14 +108,6 @@ class PairNoise {
                 part[0].topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() - part[1].topLeftCorner<3, 3>();
                 part[2](3, 3) = part[2](4, 4) = 1;
                 part[3](5, 5) = 1;
-                Eigen::Matrix<double, 6, 3> turned;
-                if (robot_outside_) {
-                    turned.topRows<3>() = -lever * skew(y.translation());
-                    turned.bottomRows<3>() = y.linear().transpose();
-                } else {
-                    turned.topRows<3>() = -lever * chain_.a[i].linear() * skew(x * chain_.c[i].translation());
-                    turned.bottomRows<3>() = (x.linear() * chain_.c[i].linear()).transpose();
-                }
                 part[4] = turned * turned.transpose();
             }
             parts_.push_back(std::move(part));
@@ -102,7 +120,7 @@ class PairNoise {
         weighted_.resize(count());
         Matrix12 information = Matrix12::Zero();
         for (std::size_t i = 0; i < count(); ++i) {
-            Matrix6 s = Matrix6::Zero();
+            Matrix6 s = known_[i];
             for (std::size_t k = 0; k < variance_.size(); ++k) s += variance_[k] * parts_[i][k];
             inverse_[i] = s.inverse();
             weighted_[i] = inverse_[i] * jacobian(i);
@@ -191,10 +209,12 @@ class PairNoise {
 
     const Chain& chain_;
     bool robot_outside_;
+    RobotRepeatability robot_;
     Scales scales_;
     std::vector<double> variance_, start_;
     Linear at_;
     std::vector<std::vector<Matrix6>> parts_;
+    std::vector<Matrix6> known_;
     std::vector<Matrix6> inverse_;
     std::vector<Rows> weighted_;
     Matrix12 cover_ = Matrix12::Zero();
@@ -202,8 +222,9 @@ class PairNoise {
 
 }  // namespace
 
-Weighed weigh(const Chain& chain, bool robot_outside, const Pose& x, const Pose& y, const Scales& scales) {
-    return PairNoise(chain, robot_outside, scales).run(x, y);
+Weighed weigh(const Chain& chain, bool robot_outside, const RobotRepeatability& robot, const Pose& x,
+              const Pose& y, const Scales& scales) {
+    return PairNoise(chain, robot_outside, robot, scales).run(x, y);
 }
 
 }  // namespace seamwright::hand_eye

@@ -47,11 +47,7 @@ Expected<void> check_input(const std::vector<SphereObservation>& observations,
                                Text("observation '{}'", observation.id));
     }
     SEAM_OK(check_ids(ids, options.exclude, "observations"));
-    if (!(options.robot_sigma_mm >= 0 && options.robot_sigma_mm <= 10 && options.robot_sigma_rad >= 0 &&
-          options.robot_sigma_rad <= 0.1))
-        return input_error("the robot's repeatability is negative, not finite or above 10 mm and 5 degrees",
-                           "robot",
-                           "give one standard deviation of an arrival, e.g. 0.03 mm and 0.005 degrees");
+    SEAM_OK(check_repeatability(options.robot));
     if (options.radius_mm && !(std::isfinite(*options.radius_mm) && *options.radius_mm > 0))
         return input_error("the sphere's radius is not a positive number", "radius_mm",
                            "give it in millimetres or null");
@@ -483,8 +479,8 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     if (result.weakest_sigma_mm * 3 < kUsableTcp_mm) result.degenerate.clear();
 
     const double turned =
-        options.robot_sigma_rad * (model.flange_from_sensor * result.working_point_mm).norm();
-    const double stated = options.robot_sigma_mm * options.robot_sigma_mm + turned * turned;
+        options.robot.sigma_rad * (model.flange_from_sensor * result.working_point_mm).norm();
+    const double stated = options.robot.sigma_mm * options.robot.sigma_mm + turned * turned;
     result.status = TcpSphereStatus::ok;
     result.flange_from_sensor = model.flange_from_sensor;
     result.centre_base_mm = model.centre_base;

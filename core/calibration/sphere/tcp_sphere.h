@@ -40,6 +40,7 @@
 
 #include "core/calibration/calibration.h"
 #include "core/calibration/field_scale.h"
+#include "core/calibration/robot_repeatability.h"
 #include "core/geometry/pose.h"
 #include "core/profile/profile.h"
 
@@ -56,8 +57,7 @@ struct TcpSphereOptions {
     std::vector<std::string> exclude;  // ids left out of the solution; their residual is still given
     // Where the sensor should sit, when known: only used to recognise mirrored axes, never as a start.
     std::optional<Pose> nominal_flange_from_sensor;
-    // One arrival of the robot, an axis: its repeatability. 0: not stated, estimated where it shows.
-    double robot_sigma_mm = 0, robot_sigma_rad = 0;
+    RobotRepeatability robot;  // not stated: estimated where it shows
     // false: many times quicker and for comparing many sets of poses: wrong poses are left out only where they show
     // without searching small subsets, and nothing is held out or proposed.
     bool thorough = true;

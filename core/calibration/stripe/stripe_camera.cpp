@@ -373,9 +373,11 @@ class Solver {
         for (const auto& b : bundle_.base_from_flange) n += b.has_value();
         return n;
     }
-    // The robot's sigmas come from few poses: value +- 1.96 sigma of what rests on them holds 95 %.
+    double robot_freedom() const { return std::max(3.0, 3 * robot_views() - 6); }
+    // The robot's sigmas come from few poses: value +- 1.96 sigma of what rests on them holds 95 %. Not where they are
+    // stated.
     double robot_student() const {
-        return student_quantile(0.975, std::max(3.0, 3 * robot_views() - 6)) / kNormal95;
+        return robot_as_stated_ ? 1 : student_quantile(0.975, robot_freedom()) / kNormal95;
     }
 
     // Sigmas from the residuals, within what robots and corners can be.
@@ -385,10 +387,22 @@ class Solver {
         bundle_.corner_sigma_px = std::clamp(std::sqrt(fit.corner_cost / std::max(free, 10.0)), 0.01, 3.0);
         if (!has_robot()) return;
         const double n = robot_views();
-        const double left = std::sqrt(3 * n / std::max(3 * n - 6, 3.0));
+        const double left = std::sqrt(3 * n / robot_freedom());
         bundle_.robot_sigma_mm = std::clamp(left * fit.robot_rms_mm / std::sqrt(3.0), 0.05, 5.0);
         bundle_.robot_sigma_rad =
             std::clamp(left * fit.robot_rms_rad / std::sqrt(3.0), rad_from_deg(0.01), rad_from_deg(1));
+        const RobotRepeatability& stated = options_.robot;
+        const double chance = std::sqrt(chi_squared_quantile(0.99, robot_freedom()) / robot_freedom());
+        robot_as_stated_ = stated.sigma_mm > 0 && stated.sigma_rad > 0 &&
+                           bundle_.robot_sigma_mm <= std::max(chance * stated.sigma_mm, 0.05) &&
+                           bundle_.robot_sigma_rad <= std::max(chance * stated.sigma_rad, rad_from_deg(0.01));
+        if (robot_as_stated_) {
+            bundle_.robot_sigma_mm = stated.sigma_mm;
+            bundle_.robot_sigma_rad = stated.sigma_rad;
+        } else {
+            bundle_.robot_sigma_mm = std::max(bundle_.robot_sigma_mm, stated.sigma_mm);
+            bundle_.robot_sigma_rad = std::max(bundle_.robot_sigma_rad, stated.sigma_rad);
+        }
     }
 
     void refine_without_stripe() {
@@ -754,6 +768,7 @@ class Solver {
     std::vector<char> best_used_;
     bool best_on_bow_ = false;
     Text robot_note_;
+    bool robot_as_stated_ = false;
 };
 
 }  // namespace

@@ -9,8 +9,9 @@
 // touched, the plate was lifted at the stripe) is named and left out, never averaged in.
 //
 // Noise model: corners independent, one sigma in px; robot poses one sigma in mm and in rad, at the flange; stripe rows 0.2
-// mm with Huber's weight. All three sigmas are estimated from the residuals (the last is fixed: rows of a
-// frame are not independent).
+// mm with Huber's weight. The first three are estimated from the residuals (the last is fixed: rows of a frame are not
+// independent); the robot's are the stated ones where its repeatability is given and the residuals are not beyond chance
+// against it.
 //
 // Degenerate: all plates parallel (f undetermined without robot motion); all stripes on one line in space
 // (the plane may turn about it); fewer than two rotation axes of the robot (hand-eye undetermined).
@@ -23,6 +24,7 @@
 #include "core/calibration/board/board.h"
 #include "core/calibration/camera/plate_bundle.h"
 #include "core/calibration/field_scale.h"
+#include "core/calibration/robot_repeatability.h"
 #include "core/error.h"
 
 namespace seamwright {
@@ -53,6 +55,7 @@ struct StripeCameraOptions {
     std::vector<std::string> exclude;      // frames left out of the solution
     std::optional<CameraFreedom> freedom;  // both or none: fixes the model instead of choosing it
     std::optional<ShapeFreedom> shape;
+    RobotRepeatability robot;
 };
 
 struct StripeFrameResult {

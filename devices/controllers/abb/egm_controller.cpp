@@ -56,7 +56,8 @@ class Egm final : public SimulatedEgm {
 
     std::vector<std::string> messages() const override { return application_->messages(); }
     // Throws rapid::LoadError.
-    void start(const std::vector<rapid::SourceText>& modules) {
+    void start(std::shared_ptr<SimulatedCell> cell, const std::vector<rapid::SourceText>& modules) {
+        cell_ = std::move(cell);
         rapid::EgmApplicationSettings settings;
         settings.path = options_.path;
         settings.path_s = options_.path_s;
@@ -95,11 +96,13 @@ class Egm final : public SimulatedEgm {
                 told_.setZero();
             }
             before = now;
+            const Pose actual = corrected(now.programmed, now.travel);
+            if (running && permitted()) options_.path.carry(cell_.get(), actual);
             EgmState s;
             s.seqno = ++seqno;
             s.tm_ms = static_cast<std::uint32_t>(clock_ms_);
             s.planned = now.programmed;
-            s.measured = corrected(now.programmed, now.travel);
+            s.measured = actual;
             s.motors_on = s.rapid_running = true;
             s.mci = now.mci;
             if (kind == ControllerFault::out_of_range) {
@@ -200,6 +203,7 @@ class Egm final : public SimulatedEgm {
     const EgmRobotOptions options_;
     UdpSocket socket_;
     std::unique_ptr<SimulatedController> measuring_;
+    std::shared_ptr<SimulatedCell> cell_;
     NextPart measured_;
     Eigen::Vector3d told_ = Eigen::Vector3d::Zero(), in_force_ = told_, out_ = told_;
     std::int64_t clock_ms_ = 0;
@@ -239,11 +243,11 @@ Expected<std::vector<rapid::SourceText>> modules_of(const EgmRobotOptions& o) {
 Expected<std::unique_ptr<SimulatedController>> start_abb_egm(std::shared_ptr<SimulatedCell> cell,
                                                              const nlohmann::json& settings,
                                                              StartController start_controller) {
-    if (auto ok = only_fields(
-            settings,
-            {"address", "port", "cycle_ms", "late_limit", "max_translation_mm", "restart_ms", "speed_mm_s",
-             "straight", "slow_ms", "ramp_out_ms", "application", "path_s", "measuring"},
-            "");
+    if (auto ok = only_fields(settings,
+                              {"address", "port", "cycle_ms", "late_limit", "max_translation_mm",
+                               "restart_ms", "speed_mm_s", "straight", "slow_ms", "ramp_out_ms",
+                               "application", "path_s", "path", "flange_from_tcp", "measuring"},
+                              "");
         !ok)
         return tl::unexpected(ok.error());
     EgmRobotOptions o;
@@ -271,13 +275,14 @@ Expected<std::unique_ptr<SimulatedController>> start_abb_egm(std::shared_ptr<Sim
     o.path.straight = straight;
     SEAM_TRY(auto application, json_bool_or(settings, "application", o.application, ""));
     o.application = application;
-    auto measuring = start_measuring_controller(settings, std::move(cell), start_controller);
+    SEAM_OK(read_simulated_path(settings, o.path));
+    auto measuring = start_measuring_controller(settings, cell, start_controller);
     if (!measuring) return measuring;
     SEAM_TRY(auto socket, UdpSocket::bind(o.address == "127.0.0.1" ? "127.0.0.1" : "0.0.0.0", 0));
     SEAM_TRY(auto modules, modules_of(o));
     auto controller = std::make_unique<Egm>(o, std::move(socket), std::move(*measuring));
     try {
-        controller->start(modules);
+        controller->start(std::move(cell), modules);
     } catch (const rapid::LoadError& e) {
         return input_error(e.what(), "programs of the ABB controller");
     }

@@ -5,7 +5,7 @@
 // Settings: {"address": "127.0.0.1", "port": 6510, "cycle_ms": 4, "late_limit": 100 (cycles without an answer until
 // EGM stops: CommTimeout), "max_translation_mm": 20, "restart_ms": 700 (between two paths, and until a program that
 // stands is started again), "ramp_out_ms": 200 (in which a stopped EGM leads the correction away), "speed_mm_s": 100,
-// "straight": false (a line instead of a circle), "application": true, "path_s": 2 (of the path behind its lead-in;
+// "straight": false (a line instead of a circle), "path" and "flange_from_tcp" of simulated_path.h, "application": true, "path_s": 2 (of the path behind its lead-in;
 // "application" false: the lead-in never ends), "slow_ms": 300, "measuring": {"driver", "settings"}}. Faults:
 // silent, slow, half_message and disconnect as for RSI; wrong_answer is a message of another type; reject_write ends EGM
 // with MCI_ERROR as soon as a correction comes; out_of_range tells positions that no robot has. released() is true

@@ -39,6 +39,7 @@ class Rsi final : public SimulatedRsi {
         : options_(std::move(options)), socket_(std::move(socket)), measuring_(std::move(measuring)) {}
     // Error (KrlError) for a program that the controller does not load.
     void start(const std::shared_ptr<SimulatedCell>& cell, const std::vector<ProgramFile>& program) {
+        cell_ = cell;
         if (options_.application) {
             krl::RsiApplicationSettings settings{options_.path, options_.path_s, options_.restart_ms};
             settings.path_over = [this] { take(); };
@@ -152,6 +153,7 @@ class Rsi final : public SimulatedRsi {
             const Pose actual = lagging(corrected(now.programmed));
             if (kind != ControllerFault::half_message && kind != ControllerFault::disconnect)
                 half_sent = false;
+            if (now.under_way) options_.path.carry(cell_.get(), actual);
             const bool wild = kind == ControllerFault::out_of_range;
             const std::string text = fmt::format(
                 "<Rob Type=\"KUKA\">{}{}<Delay D=\"{}\" /><DiL>0</DiL><Path>{}</Path><IPOC>{}</IPOC></Rob>",
@@ -175,7 +177,9 @@ class Rsi final : public SimulatedRsi {
             } else {
                 missed();
             }
-            if (application_) application_->set_release(release_);
+            // One robot: its path does not begin before its measuring program has come to its end.
+            const bool measured = !measuring_ || measuring_->verdict() == PartVerdict::corrected;
+            if (application_) application_->set_release(release_ && measured);
             if (measured_.begins(measuring_.get())) part_begins();
             const bool correcting = std::any_of(sum_.begin(), sum_.end(), [](double x) { return x != 0; });
             const double size = Eigen::Vector3d(sum_[0], sum_[1], sum_[2]).norm();
@@ -258,6 +262,7 @@ class Rsi final : public SimulatedRsi {
     const Options options_;
     UdpSocket socket_;
     std::unique_ptr<SimulatedController> measuring_;
+    std::shared_ptr<SimulatedCell> cell_;
     NextPart measured_;
     std::array<double, 6> sum_{}, last_{};
     std::uint64_t late_ = 0;  // as Delay D tells
@@ -281,11 +286,12 @@ class Rsi final : public SimulatedRsi {
 Expected<std::unique_ptr<SimulatedController>> start_kuka_rsi(std::shared_ptr<SimulatedCell> cell,
                                                               const nlohmann::json& settings,
                                                               StartController start_controller) {
-    if (auto ok = only_fields(settings,
-                              {"address", "port", "cycle_ms", "mode", "reference", "sen_type", "late_limit",
-                               "max_translation_mm", "restart_ms", "speed_mm_s", "slow_ms", "following_ms",
-                               "hold_on", "delay", "application", "path_s", "measuring"},
-                              "");
+    if (auto ok =
+            only_fields(settings,
+                        {"address", "port", "cycle_ms", "mode", "reference", "sen_type", "late_limit",
+                         "max_translation_mm", "restart_ms", "speed_mm_s", "slow_ms", "following_ms",
+                         "hold_on", "delay", "application", "path_s", "path", "flange_from_tcp", "measuring"},
+                        "");
         !ok)
         return tl::unexpected(ok.error());
     Options o;
@@ -327,6 +333,7 @@ Expected<std::unique_ptr<SimulatedController>> start_kuka_rsi(std::shared_ptr<Si
         if (!(number >= 0 && number <= 1e4)) return input_error("not within 0 and 10000", key);
         *value = number;
     }
+    SEAM_OK(read_simulated_path(settings, o.path));
     auto measuring = start_measuring_controller(settings, cell, start_controller);
     if (!measuring) return measuring;
     SEAM_TRY(auto socket, UdpSocket::bind(o.address == "127.0.0.1" ? "127.0.0.1" : "0.0.0.0", 0));

@@ -9,7 +9,7 @@
 // has ended, or was cancelled with RSI, is started again, and from a HALT to the start key), "delay":
 // "run_length" | "sum" (of D), "hold_on": true for absolute, false for relative, "following_ms": 8 (servo
 // lag), "application": true (the delivered program, whose path takes "path_s": 2; false: RSI is on always, on
-// a circle without end), "speed_mm_s": 100, "slow_ms": 300, "measuring": {"driver", "settings"}}. Faults:
+// a circle without end), "speed_mm_s": 100, "path" and "flange_from_tcp" of simulated_path.h, "slow_ms": 300, "measuring": {"driver", "settings"}}. Faults:
 // silent sends nothing, slow sends late, wrong_answer repeats an old IPOC, half_message and disconnect cut
 // telegrams (the latter stops sending after it), reject_write stops RSI as soon as a correction comes,
 // out_of_range tells positions that no robot has. released() is true while <Release> is (without an

@@ -1,5 +1,6 @@
 #include "projects/calibrate/input/entry.h"
 
+#include "core/geometry/pose.h"
 #include "devices/exchange/json_fields.h"
 
 namespace seamwright {
@@ -24,6 +25,16 @@ Expected<std::pair<int, int>> image_size_of(const json& data, const std::string&
         if (!(side >= 1 && side <= kLargest))
             return input_error("this is no image size", at, "give [width, height] in pixels");
     return std::pair(static_cast<int>(size[0]), static_cast<int>(size[1]));
+}
+
+Expected<RobotRepeatability> repeatability_of(const json& data) {
+    const auto robot = data.find("robot");
+    if (robot == data.end() || robot->is_null()) return RobotRepeatability{};
+    SEAM_TRY(const double mm, json_number(*robot, "sigma_mm", "robot"));
+    SEAM_TRY(const double deg, json_number_or(*robot, "sigma_deg", 0.0, "robot"));
+    const RobotRepeatability stated{mm, rad_from_deg(deg)};
+    SEAM_OK(check_repeatability(stated));
+    return stated;
 }
 
 }  // namespace seamwright

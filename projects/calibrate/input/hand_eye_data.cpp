@@ -18,7 +18,8 @@ Expected<HandEyeData> parse_hand_eye_data(const json& data) {
         return input_error(Text("the mount '{}' is unknown", mount_name), "mount",
                            "write eye_in_hand or eye_to_hand");
     SEAM_TRY(auto list, json_array(data, "pairs", ""));
-    HandEyeData set{*mount, {}};
+    SEAM_TRY(const auto robot, repeatability_of(data));
+    HandEyeData set{*mount, {}, robot};
     for (std::size_t i = 0; i < list->size(); ++i) {
         const json& entry = (*list)[i];
         const std::string where = json_path("pairs", i);

@@ -12,6 +12,7 @@ namespace seamwright {
 struct HandEyeData {
     Mount mount = Mount::eye_in_hand;
     std::vector<HandEyePair> pairs;
+    RobotRepeatability robot;
 };
 Expected<HandEyeData> parse_hand_eye_data(const nlohmann::json& data);
 

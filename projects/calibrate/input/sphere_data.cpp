@@ -56,12 +56,8 @@ Expected<SphereData> parse_sphere_data(const json& data, const std::vector<std::
         SEAM_TRY(auto nominal, parse_pose(*it, "nominal_flange_from_sensor"));
         options.nominal_flange_from_sensor = nominal;
     }
-    if (const auto it = data.find("robot"); it != data.end() && !it->is_null()) {
-        SEAM_TRY(const double mm, json_number(*it, "sigma_mm", "robot"));
-        SEAM_TRY(const double deg, json_number_or(*it, "sigma_deg", 0.0, "robot"));
-        options.robot_sigma_mm = mm;
-        options.robot_sigma_rad = rad_from_deg(deg);
-    }
+    SEAM_TRY(const auto robot, repeatability_of(data));
+    options.robot = robot;
     SEAM_TRY(auto list, json_array(data, "observations", ""));
     for (std::size_t i = 0; i < list->size(); ++i) {
         SEAM_TRY(auto observation, parse_sphere_observation((*list)[i], i, json_path("observations", i)));

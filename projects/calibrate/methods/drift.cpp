@@ -1,6 +1,6 @@
 // {"flange_from_sensor":POSE
 // (stored),"observations":[{"id"?,"base_from_flange":POSE,"profile":[[x,z],..],"centre_base_mm":[3],
-//  "radius_mm"}],"other_sigma_mm"?,"limits":{"translation_mm","rotation_deg"}?}: centre and radius may stand
+//  "radius_mm"}],"other_sigma_mm"?,"robot":{"sigma_mm","sigma_deg"?}?,"limits":{"translation_mm","rotation_deg"}?}: centre and radius may stand
 //  once at the top; or
 // {"measurements":[{"id"?,"base_from_flange":POSE,"measured_flange":[3],"known_base":[3],"sigma_mm"?}],"limits"?}
 // (plate points).
@@ -76,6 +76,15 @@ Expected<std::vector<DriftMeasurement>> from_points(const json& data,
     return measurements;
 }
 
+// The flange stands off by what the robot repeats, and its turn acts with the lever to the place that is measured.
+void add_repeatability(const RobotRepeatability& robot, std::vector<DriftMeasurement>& measurements) {
+    for (DriftMeasurement& m : measurements) {
+        const Eigen::Matrix3d lever = skew(m.measured_flange_mm);
+        m.covariance += robot.sigma_mm * robot.sigma_mm * Eigen::Matrix3d::Identity() +
+                        robot.sigma_rad * robot.sigma_rad * lever * lever.transpose();
+    }
+}
+
 Expected<CalibrationSolution> solve_drift(const json& data, const ExcludedIds& exclude) {
     DriftLimits limits;
     if (const auto it = data.find("limits"); it != data.end()) {
@@ -86,6 +95,8 @@ Expected<CalibrationSolution> solve_drift(const json& data, const ExcludedIds& e
     auto measurements =
         data.contains("measurements") ? from_points(data, exclude) : from_spheres(data, exclude);
     if (!measurements) return tl::unexpected(measurements.error());
+    SEAM_TRY(const auto robot, repeatability_of(data));
+    add_repeatability(robot, *measurements);
     SEAM_TRY(auto checked, check_drift(*measurements, limits));
 
     CalibrationSolution solution;
@@ -137,7 +148,8 @@ CalibrationMethod drift_method() {
     m.id = "drift";
     m.help = "Does a stored calibration still hold";
     m.usage = "measured.json";
-    m.layout = R"({"flange_from_sensor":POSE,"centre_base_mm":[x,y,z],"radius_mm":R,"other_sigma_mm"?,
+    m.layout =
+        R"({"flange_from_sensor":POSE,"centre_base_mm":[x,y,z],"radius_mm":R,"other_sigma_mm"?,"robot":{"sigma_mm","sigma_deg"?}?,
    "limits":{"translation_mm","rotation_deg"}?,"observations":[{"id"?,"base_from_flange":POSE,"profile":[[x,z],..]},..]}
   or {"measurements":[{"id"?,"base_from_flange":POSE,"measured_flange":[x,y,z],"known_base":[x,y,z],"sigma_mm"?},..]})";
     m.example = drift_example;
@@ -148,7 +160,7 @@ CalibrationMethod drift_method() {
     m.use = AnswerUse::check;
     m.fewest = 1;
     m.advised = 3;
-    m.robot = m.model = true;
+    m.robot = m.model = m.repeatability = true;
     m.keeps_back = false;
     m.settings = {
         sphere_radius_setting(),

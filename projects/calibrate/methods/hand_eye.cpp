@@ -1,4 +1,5 @@
-// {"mount":"eye_in_hand|eye_to_hand","pairs":[{"id"?,"base_from_flange":POSE,"camera_from_target":POSE}]}
+// {"mount":"eye_in_hand|eye_to_hand","pairs":[{"id"?,"base_from_flange":POSE,"camera_from_target":POSE}],
+//  "robot":{"sigma_mm","sigma_deg"?}?}
 // -> {"status","flange_from_camera" | "base_from_camera","base_from_target" |
 // "flange_from_target","rms_mm","rms_deg","sigma",...}
 
@@ -20,7 +21,7 @@ namespace {
 
 Expected<CalibrationSolution> solve_hand_eye(const json& data, const ExcludedIds& exclude) {
     SEAM_TRY(auto set, parse_hand_eye_data(data));
-    SEAM_TRY(auto solved, calibrate_hand_eye(set.mount, set.pairs, exclude));
+    SEAM_TRY(auto solved, calibrate_hand_eye(set.mount, set.pairs, exclude, set.robot));
 
     CalibrationSolution solution;
     json& result = solution.document;
@@ -80,7 +81,8 @@ CalibrationMethod hand_eye_method() {
     m.help = "Camera on the flange, or beside the robot";
     m.usage = "pairs.json";
     m.layout =
-        R"({"mount":"eye_in_hand"|"eye_to_hand","pairs":[{"id"?,"base_from_flange":POSE,"camera_from_target":POSE},..]})";
+        R"({"mount":"eye_in_hand"|"eye_to_hand","pairs":[{"id"?,"base_from_flange":POSE,"camera_from_target":POSE},..],
+   "robot":{"sigma_mm","sigma_deg"?}?})";
     m.example = hand_eye_example;
     m.poses = {{"pairs", kRobotPose}, {"pairs", "camera_from_target"}};
     m.solve = solve_hand_eye;
@@ -89,7 +91,7 @@ CalibrationMethod hand_eye_method() {
     m.capture = CaptureKind::board_pose;
     m.fewest = 3;
     m.advised = 8;
-    m.robot = m.model = true;
+    m.robot = m.model = m.repeatability = true;
     m.settings = board_settings();
     m.fixed_settings = {{"mount", "eye_in_hand"}};
     m.title = "Camera on the flange (hand-eye)";

@@ -20,7 +20,15 @@ bool of_all_sensors(CaptureKind kind) {
 }
 
 Expected<json> prepared_settings(const CalibrationMethod& method, json settings, const Calibration* base,
-                                 const std::vector<Calibration>& kept) {
+                                 const std::vector<Calibration>& kept, const RobotSetup* robot) {
+    if (method.repeatability && robot && !settings.contains("robot") &&
+        !robot->arrival_covariance.isZero(0)) {
+        // One sigma for the three axes: what arrivals along the worst axis do more, they do less along the others.
+        const auto sigma = [](const Eigen::Matrix3d& c) { return std::sqrt(std::max(0.0, c.trace() / 3)); };
+        settings["robot"] = {
+            {"sigma_mm", sigma(robot->arrival_covariance.topLeftCorner<3, 3>())},
+            {"sigma_deg", deg_from_rad(sigma(robot->arrival_covariance.bottomRightCorner<3, 3>()))}};
+    }
     return method.prepare ? method.prepare(std::move(settings), base, kept)
                           : Expected<json>(std::move(settings));
 }

@@ -110,6 +110,7 @@ struct CalibrationMethod {
     AnswerUse use = AnswerUse::sensor;
     int fewest = 1, advised = 1;  // captures
     bool robot = false;           // a robot pose belongs to every capture
+    bool repeatability = false;   // its data take the robot's ("robot":{"sigma_mm","sigma_deg"})
     bool model = false;      // its captures are made through the calibration in use (pixel to millimetre)
     bool keeps_back = true;  // captures can be kept back to verify the answer with
     std::vector<MethodSetting> settings = {};
@@ -126,9 +127,11 @@ struct CalibrationMethod {
     SetUpDrawing drawing = SetUpDrawing::board;
 };
 
-// With what the method takes over, see CalibrationMethod::prepare.
+// With what the method takes over, see CalibrationMethod::prepare, and the repeatability of the robot (nullptr: none) where
+// the project holds a measured one and the settings state none.
 Expected<nlohmann::json> prepared_settings(const CalibrationMethod& method, nlohmann::json settings,
-                                           const Calibration* base, const std::vector<Calibration>& kept);
+                                           const Calibration* base, const std::vector<Calibration>& kept,
+                                           const RobotSetup* robot);
 // The method's settings at their defaults, as its data hold them.
 nlohmann::json default_settings(const CalibrationMethod& method);
 // Error (input): out of range.

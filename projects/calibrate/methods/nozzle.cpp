@@ -1,7 +1,7 @@
 // {"target":{"place_mm":[x,y,z],"radius_mm"?,"radius_sigma_mm"?,"covariance_mm2":3x3 | "sigma_mm"?,
 //   "calibration"? (which one's sphere it is, as a session notes it)},
 //  "touches":[{"id"?,"base_from_flange":POSE}],"sigma_mm"?,"tip_radius_mm"?,"programmed":POSE?,
-//  "robot":{"sigma_mm","sigma_deg"}?}
+//  "robot":{"sigma_mm","sigma_deg"?}?}
 // -> {"status":"ok|undetermined","flange_from_nozzle","sigma":{"xyz_mm","worst_mm"},"covariance" 3x3 (mm^2, flange),
 //     "covariance_random","covariance_systematic" (the same),"covariance_pose" 6x6 (tangent of pose.h),
 //     "deviation":{"mm","length_mm","chi_squared","limit","beyond_chance"} or null (no programmed tool),
@@ -102,12 +102,8 @@ Expected<NozzleData> parse_nozzle_data(const json& data, const ExcludedIds& excl
     }
     SEAM_TRY(auto ball, json_number_or(data, "tip_radius_mm", 0, ""));
     set.options.tip_radius_mm = ball;
-    if (const json* robot = given_field(data, "robot")) {
-        SEAM_TRY(auto mm, json_number(*robot, "sigma_mm", "robot"));
-        SEAM_TRY(auto deg, json_number(*robot, "sigma_deg", "robot"));
-        set.options.robot_mm = mm;
-        set.options.robot_rad = rad_from_deg(deg);
-    }
+    SEAM_TRY(const auto robot, repeatability_of(data));
+    set.options.robot = robot;
     if (const json* tool = given_field(data, "programmed")) {
         SEAM_TRY(auto pose, parse_pose(*tool, "programmed"));
         if (!pose.isApprox(Pose::Identity(), 1e-12)) set.options.programmed = pose;
@@ -278,7 +274,7 @@ CalibrationMethod nozzle_method() {
     m.layout = R"({"target":{"place_mm":[x,y,z],"radius_mm"? (absent: a sharp point),"radius_sigma_mm"?,
      "covariance_mm2":3x3 or "sigma_mm"?},"touches":[{"id"?,"base_from_flange":POSE},..],
    "sigma_mm"? (of a touch; absent: from the scatter),"tip_radius_mm"?,"programmed":POSE? (flange_from_tool),
-   "robot":{"sigma_mm","sigma_deg"}?}   mm, robot's base; |base_from_flange tip - place| = radius + tip_radius)";
+   "robot":{"sigma_mm","sigma_deg"?}?}   mm, robot's base; |base_from_flange tip - place| = radius + tip_radius)";
     m.example = nozzle_example;
     m.poses = {{"touches", kRobotPose}};
     m.solve = solve_nozzle;
@@ -288,7 +284,7 @@ CalibrationMethod nozzle_method() {
     m.use = AnswerUse::record;
     m.fewest = 4;
     m.advised = 9;
-    m.robot = true;
+    m.robot = m.repeatability = true;
     m.settings = nozzle_settings();
     m.fixed_settings = {{"programmed", {{"xyz", {0, 0, 0}}, {"abc", {0, 0, 0}}}}};
     m.prepare = prepare_nozzle;

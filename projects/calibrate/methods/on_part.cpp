@@ -104,11 +104,8 @@ Expected<OnPartOptions> parse_on_part_options(const json& data, const ExcludedId
     options.exclude = exclude;
     SEAM_TRY(auto latency, parse_latency(data));
     options.latency_s = latency;
-    if (const auto it = data.find("robot"); it != data.end() && !it->is_null()) {
-        SEAM_TRY(auto mm, json_number(*it, "sigma_mm", "robot"));
-        SEAM_TRY(auto deg, json_number(*it, "sigma_deg", "robot"));
-        options.robot = RobotRepeatability{mm, rad_from_deg(deg)};
-    }
+    SEAM_TRY(const auto robot, repeatability_of(data));
+    if (robot.stated()) options.robot = robot;
     if (const auto it = data.find("prior"); it != data.end() && !it->is_null()) {
         SEAM_TRY(auto field, json_field(*it, "flange_from_sensor", "prior"));
         SEAM_TRY(auto pose, parse_pose(*field, "prior.flange_from_sensor"));
@@ -265,6 +262,7 @@ CalibrationMethod on_part_method() {
     m.example = on_part_example;
     m.solve = solve_on_part;
     m.entries = "passes";
+    m.repeatability = true;
     m.capture = CaptureKind::files;
     m.fewest = 2;
     m.advised = 12;

@@ -1,5 +1,5 @@
 // {"points":[{"id"?,"plate":[3],"world":[3]} or {"id"?,"points":[{"plate","world"},..]} (measured in one
-// stand, left out together)],"sigma_mm"?} ->
+// stand, left out together; "base_from_flange"? of it)],"sigma_mm"?,"robot":{"sigma_mm","sigma_deg"?}?} ->
 // {"status","world_from_plate","rms_mm","sigma","scale","mirrored",...}
 
 #include "core/calibration/pose/plate.h"
@@ -24,6 +24,7 @@ using nlohmann::json;
 struct Stand {
     std::string id;
     std::vector<PlatePoint> points;
+    double lever_mm = 0;  // from the flange to the middle of its points; 0: the flange's place is not known
     bool used = true;
 };
 
@@ -57,6 +58,28 @@ std::optional<StandScatter> scatter_of(const std::vector<Stand>& stands, const P
     return scatter;
 }
 
+// Of a mean point an axis, as if its error were its own, by the robot's stated repeatability: the points of a stand err
+// together, and more stands make it smaller. Points by themselves were touched one by one.
+double stated_sigma_mm(const RobotRepeatability& robot, const std::vector<Stand>& stands) {
+    double variance = 0, points = 0, used = 0;
+    for (const Stand& stand : stands) {
+        if (!stand.used) continue;
+        variance += std::pow(robot.sigma_mm, 2) + std::pow(robot.sigma_rad * stand.lever_mm, 2);
+        points += static_cast<double>(stand.points.size());
+        ++used;
+    }
+    return used == 0 ? robot.sigma_mm : std::sqrt(variance / used * (points / used) / used);
+}
+
+Expected<double> lever_of(const json& entry, const Stand& stand, const std::string& where) {
+    const auto field = entry.find("base_from_flange");
+    if (field == entry.end() || field->is_null()) return 0.0;
+    SEAM_TRY(const Pose base_from_flange, parse_pose(*field, json_path(where, "base_from_flange")));
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const PlatePoint& p : stand.points) middle += p.world / static_cast<double>(stand.points.size());
+    return (middle - base_from_flange.translation()).norm();
+}
+
 Expected<CalibrationSolution> solve_plate(const json& data, const ExcludedIds& exclude) {
     PlateOptions options;
     options.exclude = exclude;
@@ -64,6 +87,7 @@ Expected<CalibrationSolution> solve_plate(const json& data, const ExcludedIds& e
         SEAM_TRY(auto sigma, json_number(data, "sigma_mm", ""));
         options.sigma_mm = sigma;
     }
+    SEAM_TRY(const auto robot, repeatability_of(data));
     SEAM_TRY(auto list, json_array(data, "points", ""));
     std::vector<PlatePoint> points;
     std::vector<Stand> stands;
@@ -92,6 +116,8 @@ Expected<CalibrationSolution> solve_plate(const json& data, const ExcludedIds& e
                      point((*inner)[k], std::to_string(k + 1), json_path(json_path(where, "points"), k)));
             stand.points.push_back(std::move(one));
         }
+        SEAM_TRY(const double lever, lever_of(entry, stand, where));
+        stand.lever_mm = lever;
         stands.push_back(std::move(stand));
     }
     std::vector<std::pair<PlatePoint, int>> means;
@@ -114,18 +140,24 @@ Expected<CalibrationSolution> solve_plate(const json& data, const ExcludedIds& e
     auto solved = calibrate_plate(points, options);
     if (!solved) return tl::unexpected(solved.error());
     const auto scatter = scatter_of(stands, solved->world_from_plate);
-    if (scatter && solved->status == PlateStatus::ok && scatter->sigma_mm > solved->sigma_mm) {
+    const double stated = stated_sigma_mm(robot, stands), shown = scatter ? scatter->sigma_mm : 0;
+    if (solved->status == PlateStatus::ok && std::max(shown, stated) > solved->sigma_mm) {
         const Verdict alone = solved->report.judgement.verdict;
-        options.sigma_mm = scatter->sigma_mm;
+        options.sigma_mm = std::max(shown, stated);
         solved = calibrate_plate(points, options);
         if (!solved) return tl::unexpected(solved.error());
         Judgement& judgement = solved->report.judgement;
-        if (judgement.verdict != alone)
+        if (judgement.verdict != alone && shown >= stated)
             judgement = {
                 judgement.verdict,
                 Text("the robot's stands disagree by {:.3f} mm; {}", scatter->rms_mm, judgement.reason),
                 "check the target's pitch, the calibration in use and the robot's poses, and measure from "
                 "more stands"};
+        else if (judgement.verdict != alone)
+            judgement = {
+                judgement.verdict,
+                Text("the robot comes back within {:.3f} mm only; {}", robot.sigma_mm, judgement.reason),
+                "measure from more stands"};
     }
 
     CalibrationSolution solution;
@@ -185,7 +217,8 @@ CalibrationMethod plate_method() {
     m.id = "plate";
     m.help = "Plate in the world from two point sets";
     m.usage = "points.json";
-    m.layout = R"({"points":[{"id"?,"plate":[x,y,z],"world":[x,y,z]},..],"sigma_mm"?}   mm)";
+    m.layout = R"({"points":[{"id"?,"plate":[x,y,z],"world":[x,y,z]},..],"sigma_mm"?,
+   "robot":{"sigma_mm","sigma_deg"?}?}   mm)";
     m.example = plate_example;
     m.solve = solve_plate;
     m.entries = "points";
@@ -193,7 +226,7 @@ CalibrationMethod plate_method() {
     m.use = AnswerUse::record;
     m.fewest = 3;
     m.advised = 6;
-    m.model = true;
+    m.model = m.repeatability = true;
     m.settings = board_settings();
     m.title = "Plate in the world";
     m.why = "Finds where a plate stands, from points known on it and measured in the world.";

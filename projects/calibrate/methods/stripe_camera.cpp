@@ -11,6 +11,7 @@
 #include "core/calibration/camera/camera.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/input/entry.h"
 #include "projects/calibrate/input/hand_eye_data.h"
 #include "projects/calibrate/methods/example/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
@@ -81,6 +82,8 @@ Expected<CalibrationSolution> solve_stripe_camera(const json& data, const Exclud
     const auto& observations = set.observations;
     StripeCameraOptions options;
     options.exclude = exclude;
+    SEAM_TRY(const auto robot, repeatability_of(data));
+    options.robot = robot;
     SEAM_TRY(auto solved, calibrate_stripe_camera(observations, set.spec, options));
 
     CalibrationSolution solution;
@@ -229,7 +232,8 @@ CalibrationMethod stripe_camera_method() {
     m.layout =
         R"({"board":{"columns","rows","pitch_mm"},"frames":[{"id"?,"size":[W,H],"scan":"rows"|"columns",
    "board":{"pixel":[[u,v],..],"index":[row*columns+column,..],"symmetry","detector"} or null,
-   "stripe":[[u,v],..],"base_from_flange":POSE or null},..]})";
+   "stripe":[[u,v],..],"base_from_flange":POSE or null},..],
+   "robot":{"sigma_mm","sigma_deg"?}?})";
     m.example = stripe_camera_example;
     m.poses = {{"frames", kRobotPose}};
     m.solve = solve_stripe_camera;
@@ -239,7 +243,7 @@ CalibrationMethod stripe_camera_method() {
     m.capture = CaptureKind::board_and_stripe;
     m.fewest = 3;
     m.advised = 10;
-    m.robot = true;
+    m.robot = m.repeatability = true;
     m.settings = board_settings();
     m.title = "Camera and laser plane (board)";
     m.why = "Finds lens, laser plane and, with robot poses, the place on the flange, from one board.";

@@ -1,5 +1,5 @@
 // {"radius_mm":r or null,"observations":[{"id","base_from_flange":POSE,"profile":[[x,z],..]}],
-//  "nominal_flange_from_sensor":POSE?,"robot":{"sigma_mm","sigma_deg"}?}; z null = no return; robot: of one arrival, an axis.
+//  "nominal_flange_from_sensor":POSE?,"robot":{"sigma_mm","sigma_deg"?}?}; z null = no return; robot: of one arrival, an axis.
 // ->
 // {"status","flange_from_sensor","centre_base_mm","radius_mm","rms_mm","noise_mm","sigma":{"xyz_mm","abc_deg","centre_mm",
 //     "radius_mm","working_mm"},"covariance_pose" 6x6 (mm,
@@ -111,7 +111,8 @@ CalibrationMethod tcp_sphere_method() {
     m.id = "tcp-sphere";
     m.help = "Sensor on the flange from profiles of one sphere";
     m.usage = "sphere.json --exclude P3";
-    m.layout = R"({"radius_mm":R or null,"nominal_flange_from_sensor":POSE?,"robot":{"sigma_mm","sigma_deg"}?,
+    m.layout =
+        R"({"radius_mm":R or null,"nominal_flange_from_sensor":POSE?,"robot":{"sigma_mm","sigma_deg"?}?,
    "observations":[{"id"?,"base_from_flange":POSE,"profile":[[x,z],..]},..]}   mm; z null: no return)";
     m.example = tcp_sphere_example;
     m.poses = {{"observations", kRobotPose}};
@@ -121,7 +122,7 @@ CalibrationMethod tcp_sphere_method() {
     m.capture = CaptureKind::sphere_profile;
     m.fewest = 6;
     m.advised = 9;
-    m.robot = m.model = true;
+    m.robot = m.model = m.repeatability = true;
     m.settings = {sphere_radius_setting()};
     m.prepare = prepare_tcp_sphere;
     m.title = "Sensor on the flange (sphere)";

@@ -162,7 +162,10 @@ Expected<json> plate_entry(const Text& where, const Calibration* base, const Boa
         points.push_back({{"plate", {on_plate.x(), on_plate.y(), on_plate.z()}},
                           {"world", {world.x(), world.y(), world.z()}}});
     }
-    return json{{"points", std::move(points)}, {"outline", (*seen)["outline"]}, {"size", (*seen)["size"]}};
+    return json{{"points", std::move(points)},
+                {"base_from_flange", pose_json(*base_from_flange)},
+                {"outline", (*seen)["outline"]},
+                {"size", (*seen)["size"]}};
 }
 
 // One shot: the chain ends on the flange, where it stood when the first sensor was shot.

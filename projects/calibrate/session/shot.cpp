@@ -137,7 +137,8 @@ std::vector<std::string> shot_sensors(const CalibrationSession& session, const P
 Expected<nlohmann::json> capture_settings(const CalibrationSession& session, const Project& project,
                                           const std::vector<std::string>& sensor_ids) {
     auto settings = prepared_settings(session.method(), session.state().settings,
-                                      calibration_of(project, session.sensor_id()), project.calibrations);
+                                      calibration_of(project, session.sensor_id()), project.calibrations,
+                                      find_robot(project, session.robot_id()));
     // What captures are measured from goes with them.
     if (settings && session.state().captures.empty()) settings->erase("anchor");
     if (settings && session.method().capture == CaptureKind::board_chain &&

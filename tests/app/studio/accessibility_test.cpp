@@ -244,6 +244,25 @@ TEST_F(Accessibility, WordsStandOutInBothThemes) {
     }
 }
 
+// From a small laptop to the hall's large screen: everything fits, and the sensor stays in sight.
+TEST_F(Accessibility, TheLiveProfileKeepsAThirdOfEveryWindow) {
+    show("de", false);
+    for (const QSize size : {QSize(1366, 768), QSize(1920, 1080), QSize(1366, 768)}) {
+        every_screen([&](const QString& where) {
+            window().resize(size);
+            settle();
+            const QString at = QString("%1 x %2, ").arg(size.width()).arg(size.height()) + where;
+            EXPECT_EQ(window().size(), size) << at.toStdString() << ": the window cannot be so small";
+            const QWidget* profile = window().views().profile;
+            if (profile->isVisible() && !profile->visibleRegion().isEmpty()) {
+                EXPECT_GE(profile->height(), 0.35 * size.height() - 1) << at.toStdString();
+            }
+            note(audit::cut_off(window()), at);
+        });
+        window().grab().save(QString(SEAMWRIGHT_SCREENS) + QString("/window_%1.png").arg(size.width()));
+    }
+}
+
 TEST_F(Accessibility, NothingIsCutOffAt1280By800) {
     measure_once();
     record_pass();

@@ -271,13 +271,13 @@ class GuidedLive : public Guided, public testing::WithParamInterface<LiveMethod>
     // The session's newest capture once more, with its pose mistyped, or taken over an edge of the plate.
     fs::path bad_entry(const CalibrationSession& s) const {
         json data = s.state().settings, entry = s.state().captures.back().taken->entry;
-        if (entry.contains("base_from_flange")) {
+        if (entry.contains("points")) {  // whose places rest on the pose already
+            for (json& p : entry["points"]) p["world"][1] = p["world"][1].get<double>() + 8;
+            entry["id"] = "typed";
+        } else if (entry.contains("base_from_flange")) {
             Pose pose = parse_pose(entry["base_from_flange"], "base_from_flange").value();
             pose.translation() += Eigen::Vector3d(6, -9, 3);
             entry["base_from_flange"] = pose_json(pose);
-            entry["id"] = "typed";
-        } else if (entry.contains("points")) {
-            for (json& p : entry["points"]) p["world"][1] = p["world"][1].get<double>() + 8;
             entry["id"] = "typed";
         } else if (entry.is_object()) {
             entry["pixel"][1] = entry["pixel"][1].get<double>() + 12;  // on the flank beside the apex

@@ -30,6 +30,9 @@ class DeskPerson {
   public:
     explicit DeskPerson(MainWindow& window) : window_(window) {}
     MainWindow& window() const { return window_; }
+    // Of the mouse, as a hand without a keyboard would make them: a choice in a list is two, what is written is one.
+    int clicks() const { return clicks_; }
+    void clicked_too(int clicks = 1) const { clicks_ += clicks; }  // beside these functions
 
     template <class T>
     T* find(const QString& name) const {
@@ -48,6 +51,7 @@ class DeskPerson {
         if (!button) return;
         EXPECT_TRUE(wait([&] { return button->isEnabled(); })) << name.toStdString() << " cannot be pressed";
         look_at(button);
+        ++clicks_;
         QTest::mouseClick(button, Qt::LeftButton);
         QApplication::processEvents();
     }
@@ -58,12 +62,14 @@ class DeskPerson {
         box->setFocus();
         const int wanted = box->findText(text);
         ASSERT_GE(wanted, 0) << text.toStdString();
+        if (box->currentIndex() != wanted) clicks_ += 2;
         while (box->currentIndex() < wanted) QTest::keyClick(box, Qt::Key_Down);
         while (box->currentIndex() > wanted) QTest::keyClick(box, Qt::Key_Up);
         QApplication::processEvents();
     }
     void write(QLineEdit* line, const QString& text) const {
         look_at(line);
+        ++clicks_;
         line->setFocus();
         line->selectAll();
         QTest::keyClicks(line, text);
@@ -85,6 +91,7 @@ class DeskPerson {
             if (!first && line->isVisible() && !line->isReadOnly()) first = line;
         ASSERT_TRUE(first);
         look_at(first);
+        ++clicks_;
         first->setFocus();
         first->selectAll();
         QApplication::clipboard()->setText(text_from_pose(pose, editor->notation()));
@@ -131,6 +138,7 @@ class DeskPerson {
     void step(int n) const {
         const auto rails = window_.findChildren<QPushButton*>("rail");
         ASSERT_EQ(rails.size(), static_cast<qsizetype>(kSteps.size()));
+        ++clicks_;
         QTest::mouseClick(rails[n - 1], Qt::LeftButton);
         QApplication::processEvents();
     }
@@ -161,6 +169,7 @@ class DeskPerson {
 
   private:
     MainWindow& window_;
+    mutable int clicks_ = 0;
 };
 
 }  // namespace seamwright

@@ -12,6 +12,7 @@
 #include <QProcess>
 #include <QRegularExpression>
 #include <QTreeWidget>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -66,12 +67,19 @@ class Teacher {
     void add(const DoorSpot& door, bool by_template) {
         me_.step(3);
         const std::size_t before = desk_.project().spots.size();
+        int clicks = me_.clicks();
         me_.click("add_spot");
+        clicks = me_.clicks() - clicks;
         ASSERT_EQ(desk_.project().spots.size(), before + 1);
         me_.write_pose("spot_pose", cell_.flange_for(door.workobject_from_sensor));
         look(before, by_template);
+        clicks += look_clicks_;
+        int& first = by_template ? template_clicks_ : end_clicks_;
+        if (first == 0) first = clicks;
         freeze(before);
     }
+    // Of the first spot of a kind, from "add" to its reference, where the robot stands there already.
+    int clicks(bool by_template) const { return by_template ? template_clicks_ : end_clicks_; }
     // An earlier spot, taught once more by a template.
     void by_template(std::size_t k) {
         me_.step(3);
@@ -115,6 +123,7 @@ class Teacher {
         })) << "the live profile of spot "
             << id(k);
         QTest::qWait(100);  // it is drawn
+        const int before = me_.clicks();
         auto* plot = me_.window().views().profile;
         const auto on_plot = [&](double x, double z) {
             return plot->focusProxy()->mapFrom(plot, plot->to_screen({x, z})).toPoint();
@@ -133,13 +142,16 @@ class Teacher {
             me_.picture(QString("05_template_%1").arg(k + 1));
             me_.drag(plot->focusProxy(), on_plot(left - 1, high + 1),
                      on_plot(std::min(left + 42, right), low - 1));
+            me_.clicked_too();
             ASSERT_GT(desk_.project().spots[k].feature.template_profile.size(), 50U);
         } else {
             me_.choose("feature_kind", "contour end");
             me_.click("pick");
             QTest::mouseClick(plot->focusProxy(), Qt::LeftButton, {}, on_plot(left, left_z));
+            me_.clicked_too();
         }
         measure_reference();
+        look_clicks_ = me_.clicks() - before;
         ASSERT_GT(desk_.project().spots[k].reference_profile.size(), 0U)
             << me_.text_of("reference").toStdString();
         me_.picture(QString("05_taught_%1").arg(k + 1));
@@ -173,7 +185,21 @@ class Teacher {
     DeskPerson& me_;
     Desk& desk_;
     const SimulatedCell& cell_;
+    int look_clicks_ = 0, end_clicks_ = 0, template_clicks_ = 0;
 };
+
+// How many clicks each chapter took, and how many it may: what a hand in a glove does a hundred times.
+struct Chapter {
+    const char* name;
+    int clicks, most;
+};
+void print(const std::vector<Chapter>& chapters) {
+    std::printf("%-44s %6s %5s\n", "clicks", "took", "most");
+    for (const Chapter& c : chapters) {
+        std::printf("%-44s %6d %5d\n", c.name, c.clicks, c.most);
+        EXPECT_LE(c.clicks, c.most) << c.name;
+    }
+}
 
 // Of the door's suggested spots the one nearest to a place that the page names, its edge along `edge`.
 std::size_t nearest_spot(const Eigen::Vector3d& place_mm, const Eigen::Vector3d& edge,
@@ -223,6 +249,12 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
         me.write_pose("workobject", cell->base_from_workobject());
 
         // Cell: one sensor, one robot, the same settings.
+        std::vector<Chapter> chapters;
+        int since = me.clicks();
+        const auto chapter = [&](const char* name, int most) {
+            chapters.push_back({name, me.clicks() - since, most});
+            since = me.clicks();
+        };
         for (const QString& device : {QString("add_sensor"), QString("add_robot")}) {
             me.click(device);
             if (device == "add_sensor") {
@@ -239,6 +271,7 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
         me.click("connect");
         ASSERT_TRUE(me.wait([&] { return desk.station().connected; }));
         ASSERT_EQ(desk.project().requirements.sigma3_mm, 0.3) << "as a project requires by itself";
+        chapter("sensor and robot, live (settings as text: 1)", 7);
         me.picture("03_cell");
 
         me.step(2);
@@ -260,7 +293,10 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
 
         // One region of all spots; then what its page says, until it is sure enough.
         const auto item = [&](CheckStep step) { return desk.checks().at(static_cast<std::size_t>(step)); };
+        chapters.push_back({"a spot by its contour's end", teacher.clicks(false), 4});
+        chapters.push_back({"a spot by a template", teacher.clicks(true), 7});
         me.step(5);
+        since = me.clicks();
         me.click("add_region");
         int ticked = 0;
         const auto tick_new = [&] {
@@ -271,11 +307,13 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
                 list->setFocus();
                 list->setCurrentRow(ticked);
                 QTest::keyClick(list, Qt::Key_Space);
+                me.clicked_too();
                 QApplication::processEvents();
             }
             ASSERT_EQ(desk.project().regions.at(0).spot_ids.size(), desk.project().spots.size());
         };
         tick_new();
+        chapter("a region of three spots", 4);
         if (HasFatalFailure()) return;
         for (int cure = 0; cure < 4 && !item(CheckStep::observable).done(); ++cure) {
             me.picture(QString("07_region_%1").arg(cure));
@@ -418,6 +456,7 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
         ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
         me.step(8);
         me.write(me.find<QLineEdit>("part_id"), "CAR-0815");
+        since = me.clicks();
         const auto asked = [&] {
             auto* confirm = window.findChild<QWidget*>("confirm");
             return confirm && confirm->isVisible();
@@ -431,6 +470,8 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
         me.click("push");
         ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
         QTest::qWait(100);
+        chapter("measured and pushed", 2);
+        print(chapters);
         me.picture("10_pushed");
         const auto runs = desk.runs().value();
         const auto newest = std::max_element(

@@ -20,6 +20,7 @@
 #include "app/manual/manual_window.h"
 #include "app/studio/command_palette.h"
 #include "app/studio/studio.h"
+#include "core/geometry/three_two_one.h"
 #include "devices/simulated/cell.h"
 #include "devices/simulated/scene/mesh_file.h"
 #include "projects/file/project_file.h"
@@ -198,6 +199,58 @@ TEST_F(Furniture, OfSeveralKindsOfPartsTheChosenOneIsMeasured) {
     ASSERT_TRUE(without) << without.error().sentence();
     ASSERT_TRUE(desk.edit_project([&](Project& p) { p = *without; }, "part type"));
     EXPECT_EQ(desk.selection().part_type(), "left");
+}
+
+TEST_F(Furniture, AFrameIsPickedOnThePartByThreeTwoOne) {
+    DeskPerson me(window());
+    Desk& desk = studio->desk();
+    desk.selection().select_region(desk.project().regions.front().id);
+    me.step(5);
+    SceneView* scene = window().views().scene;
+    if (!scene->has_opengl()) GTEST_SKIP() << "no OpenGL on this display";
+    scene->show_view(SceneView::View::front);
+    QTest::qWait(100);
+    QWidget* canvas = scene->focusProxy();
+    std::vector<Eigen::Vector3d> hits;
+    QObject::connect(scene, &SceneView::part_picked, &window(),
+                     [&](double x, double y, double z) { hits.emplace_back(x, y, z); });
+    const auto click = [&](const QPoint& at) { QTest::mouseClick(canvas, Qt::LeftButton, {}, at); };
+    // Where on the picture the part is.
+    std::vector<std::pair<QPoint, Eigen::Vector3d>> places;
+    for (int column = 1; column < 24; ++column)
+        for (int row = 1; row < 16; ++row) {
+            const QPoint at(column * canvas->width() / 24, row * canvas->height() / 16);
+            const std::size_t before = hits.size();
+            click(at);
+            if (hits.size() > before) places.emplace_back(at, hits.back());
+        }
+    ASSERT_GT(places.size(), 10U);
+    const Region before = desk.project().regions.front();
+    const auto by = [&](int axis, bool least) {
+        return *std::min_element(places.begin(), places.end(), [&](const auto& a, const auto& b) {
+            return least ? a.second[axis] < b.second[axis] : a.second[axis] > b.second[axis];
+        });
+    };
+    const auto left = by(0, true), right = by(0, false), top = by(1, false);
+    desk.selection().select_region(before.id);
+    me.click("pick_frame");
+    for (const auto& at : {left, right, top, left, right}) click(at.first);
+    EXPECT_EQ(desk.project().regions.front().base_from_frame.matrix(), before.base_from_frame.matrix())
+        << "not before the last click";
+    EXPECT_TRUE(me.text_of("pick_said").contains("origin")) << me.text_of("pick_said").toStdString();
+    click(top.first);
+    const auto frame = frame_by_three_two_one({left.second, right.second, top.second},
+                                              {left.second, right.second}, top.second);
+    ASSERT_TRUE(frame) << frame.error().sentence();
+    const Pose wanted = desk.project().part.base_from_workobject * *frame;
+    EXPECT_LT((desk.project().regions.front().base_from_frame.matrix() - wanted.matrix()).norm(), 1e-9);
+    const Eigen::Vector3d z = frame->linear().col(2);
+    EXPECT_GT(z.z(), 0.5) << "out of the part, as it was looked at";
+    desk.undo_stack().undo();
+    EXPECT_EQ(desk.project().regions.front().base_from_frame.matrix(), before.base_from_frame.matrix());
+    click(top.first);
+    EXPECT_EQ(desk.project().regions.front().base_from_frame.matrix(), before.base_from_frame.matrix())
+        << "a click after it is no pick";
 }
 
 TEST_F(Furniture, ViaPointsAreAddedWhereTheRobotStandsAndTakenOut) {

@@ -53,8 +53,7 @@ TcpSphereResult calibrated(Rng& rng, const Cell& cell) {
     TcpSphereOptions options;
     options.radius_mm = kRadius_mm;
     options.thorough = false;
-    options.robot_sigma_mm = kRobot_mm;
-    options.robot_sigma_rad = rad_from_deg(kRobot_deg);
+    options.robot = {kRobot_mm, rad_from_deg(kRobot_deg)};
     std::vector<SphereObservation> all;
     while (all.size() < kSpherePoses) {
         const Eigen::Vector3d turn(rad_from_deg(uniform(rng, -35, 35)), rad_from_deg(uniform(rng, -35, 35)),

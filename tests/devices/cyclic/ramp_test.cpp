@@ -84,5 +84,56 @@ TEST(CorrectionRamp, OnAMovingPathItEndsOnTheDisplacedPath) {
     EXPECT_TRUE(ramp.arrived());
 }
 
+// Steered: a target that moves, jumps and goes away again, on a displacement that is in force.
+TEST(CorrectionRamp, FollowsWhatSteersItWithinItsLimitsAndLeadsItBackFirst) {
+    std::mt19937 random(17);
+    std::uniform_real_distribution<double> u(-1, 1);
+    const RampLimits limits{20, 2, 100, 10};
+    constexpr double kCycle = 0.004;
+    const Eigen::Vector3d p(300, -200, 50);
+    CorrectionRamp ramp(limits, kCycle);
+    const Pose b = make_pose(Eigen::Matrix3d::Identity(), {2, -1, 1});
+    ramp.set_target(b);
+    while (!ramp.arrived()) ramp.step(p);
+    Eigen::Vector3d last = ramp.at(p).offset_mm, last_step = Eigen::Vector3d::Zero();
+    const auto step = [&] {
+        const Eigen::Vector3d now = ramp.step(p).offset_mm;
+        EXPECT_LE((now - last).norm(), limits.speed_mm_s * kCycle * (1 + 1e-9));
+        // Speed and its change, which ends at the exact target with a millionth of a millimetre.
+        EXPECT_LE((now - last - last_step).norm(), limits.acceleration_mm_s2 * kCycle * kCycle + 2e-6);
+        last_step = now - last;
+        last = now;
+    };
+    // A wave is followed without lag once it has been caught up with.
+    double worst = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const double t = i * kCycle;
+        const Eigen::Vector3d wave(1.5 * std::sin(2 * t), 0, 0), rate(3 * std::cos(2 * t), 0, 0);
+        ramp.steer(wave, rate);
+        step();
+        if (t > 2) worst = std::max(worst, (ramp.steered_mm() - wave).norm());
+    }
+    EXPECT_LT(worst, 0.02);
+    for (int jump = 0; jump < 40; ++jump) {
+        ramp.steer({2 * u(random), 2 * u(random), 2 * u(random)}, Eigen::Vector3d::Zero());
+        const int cycles = static_cast<int>(random() % 200);
+        for (int i = 0; i < cycles; ++i) step();
+    }
+    const Eigen::Vector3d displaced = b * p - p;
+    EXPECT_GT(ramp.steered_mm().norm(), 0.1);
+    ramp.set_target(Pose::Identity());
+    int cycles = 0;
+    for (; !ramp.zero() && cycles < 5000; ++cycles) {
+        const bool steered = !ramp.steered_mm().isZero(0);
+        step();
+        // One after the other, so that their speeds never add.
+        if (steered && !ramp.steered_mm().isZero(0)) {
+            EXPECT_LT((last - ramp.steered_mm() - displaced).norm(), 1e-9);
+        }
+    }
+    EXPECT_LT(cycles, 5000);
+    EXPECT_TRUE(last.isZero(0));
+}
+
 }  // namespace
 }  // namespace seamwright

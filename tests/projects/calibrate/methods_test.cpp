@@ -136,6 +136,23 @@ TEST(PlateFromStands, StatesWhatTheStandsDisagreeBy) {
         inside += off < 1.96 * std::sqrt(found.covariance(0, 0));
     }
     EXPECT_GT(inside, 0.92 * kTrials);
+    // One stand tells nothing of the robot: what is stated of it is all there is.
+    int within = 0, bare = 0;
+    for (int trial = 0; trial < kTrials; ++trial) {
+        json data = stands(random, 1, 0.1, 0.0, truth);
+        const auto hits = [&](const json& given) {
+            const auto solution = solve_calibration(plate, given, {});
+            if (!solution) return false;
+            const UncertainPose& found = std::get<PlateInWorld>(solution->found).world_from_plate;
+            return std::abs((found.pose.translation() - truth.translation()).x()) <
+                   1.96 * std::sqrt(found.covariance(0, 0));
+        };
+        bare += hits(data);
+        data["robot"] = {{"sigma_mm", 0.1}};
+        within += hits(data);
+    }
+    EXPECT_LT(bare, 0.2 * kTrials);
+    EXPECT_GT(within, 0.92 * kTrials);
     const auto wild = solve_calibration(plate, stands(random, 6, 60, 2, truth), {});
     ASSERT_TRUE(wild);
     EXPECT_EQ(wild->verdict(), Verdict::poor) << wild->report.judgement.reason.english();
@@ -199,6 +216,50 @@ TEST(BoardSettings, AreTheBoardThatIsLookedFor) {
     choose("board_pattern", "aprilgrid");
     ASSERT_TRUE(set_setting(method, settings, "board_marker", 0));
     EXPECT_FALSE(parse_board_json(settings["board"], "board")) << "an AprilGrid's tags have a size";
+}
+
+// Whoever takes the robot's repeatability says so in its layout, is never surer with it, and refuses one that is none.
+TEST_P(EveryMethod, TheRobotsRepeatabilityIsInItsSigma) {
+    if (!method_.repeatability) return;
+    EXPECT_NE(method_.layout.find("\"robot\":{"), std::string::npos);
+    json data = method_.example();
+    data.erase("robot");
+    const auto sigma = [&](const json& given) {
+        const auto solution = solve_calibration(method_, given, {});
+        EXPECT_TRUE(solution) << (solution ? "" : solution.error().sentence());
+        double sum = 0;
+        if (solution)
+            for (const auto& p : solution->report.parameters) sum += p.sigma;
+        return sum;
+    };
+    const double bare = sigma(data);
+    data["robot"] = {{"sigma_mm", 0.5}, {"sigma_deg", 0.05}};
+    EXPECT_GT(sigma(data), 1.2 * bare);
+    for (const json& bad : {json{{"sigma_mm", -1}}, json{{"sigma_mm", 1e9}}, json{{"sigma_mm", "a lot"}},
+                            json{{"sigma_mm", 0.1}, {"sigma_deg", 400}}, json(7), json::array()}) {
+        data["robot"] = bad;
+        const auto refused = solve_calibration(method_, data, {});
+        ASSERT_FALSE(refused) << bad;
+        EXPECT_EQ(refused.error().kind, ErrorKind::input) << bad;
+    }
+}
+
+// A session takes what the project knows of the robot, unless the data say it.
+TEST_P(EveryMethod, ASessionBeginsWithTheRobotsMeasuredRepeatability) {
+    RobotSetup robot;
+    Calibration base;
+    base.result = {{"centre_base_mm", {1.0, 2.0, 3.0}}};
+    const auto unmeasured = prepared_settings(method_, json::object(), &base, {}, &robot);
+    robot.arrival_covariance.diagonal() << 1e-4, 4e-4, 4e-4, 1e-8, 1e-8, 4e-8;
+    const auto settings = prepared_settings(method_, json::object(), &base, {}, &robot);
+    if (!settings) return;  // it cannot do without what this project does not keep
+    EXPECT_FALSE(unmeasured->contains("robot"));
+    ASSERT_EQ(settings->contains("robot"), method_.repeatability);
+    if (!method_.repeatability) return;
+    EXPECT_NEAR((*settings)["robot"]["sigma_mm"].get<double>(), std::sqrt(3e-4), 1e-9);
+    EXPECT_NEAR((*settings)["robot"]["sigma_deg"].get<double>(), std::sqrt(2e-8) * 180 / kPi, 1e-9);
+    const json own = {{"robot", {{"sigma_mm", 0.7}}}};
+    EXPECT_EQ((*prepared_settings(method_, own, &base, {}, &robot))["robot"], own["robot"]);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, testing::ValuesIn(ids()), [](const auto& one) {

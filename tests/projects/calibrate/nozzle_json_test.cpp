@@ -117,7 +117,7 @@ TEST(NozzleJson, TheSphereComesFromTheCalibrationInUse) {
     base.result = {{"centre_base_mm", {900, 150, 250}},
                    {"radius_mm", 25},
                    {"centre_covariance_mm2", {{1e-4, 0, 0}, {0, 1e-4, 0}, {0, 0, 1e-4}}}};
-    const auto settings = prepared_settings(nozzle(), default_settings(nozzle()), &base, {});
+    const auto settings = prepared_settings(nozzle(), default_settings(nozzle()), &base, {}, nullptr);
     ASSERT_TRUE(settings) << settings.error().sentence();
     json data = nozzle().example();
     const json own = data["target"];
@@ -130,9 +130,9 @@ TEST(NozzleJson, TheSphereComesFromTheCalibrationInUse) {
     // Another calibration has measured it anew; what a file gave stays.
     base.id = "newer";
     base.result["centre_base_mm"] = {901, 150, 250};
-    EXPECT_EQ((*prepared_settings(nozzle(), *settings, &base, {}))["target"]["place_mm"][0], 901);
-    EXPECT_EQ((*prepared_settings(nozzle(), nozzle().example(), &base, {}))["target"], own);
-    const auto nothing = prepared_settings(nozzle(), default_settings(nozzle()), nullptr, {});
+    EXPECT_EQ((*prepared_settings(nozzle(), *settings, &base, {}, nullptr))["target"]["place_mm"][0], 901);
+    EXPECT_EQ((*prepared_settings(nozzle(), nozzle().example(), &base, {}, nullptr))["target"], own);
+    const auto nothing = prepared_settings(nozzle(), default_settings(nozzle()), nullptr, {}, nullptr);
     ASSERT_FALSE(nothing);
     EXPECT_THAT(nothing.error().sentence(), HasSubstr("sphere"));
 }

@@ -102,6 +102,9 @@ TEST(OnPartJson, HostileDataAreRefusedWhereTheyAreWrong) {
         robot["robot"] = other;
         EXPECT_FALSE(refused(robot).empty()) << other;
     }
+    json robot = good;
+    robot["robot"] = {{"sigma_mm", 0.03}};
+    EXPECT_THAT(refused(robot), HasSubstr("stated in part")) << "its turn would count as exact";
 }
 
 }  // namespace

@@ -463,7 +463,8 @@ TEST(ProjectFile, IdsHaveALength) {
     {
         auto db = Database::open((folder / "a.seam").string(), SQLITE_OPEN_READWRITE).value();
         ASSERT_TRUE(
-            db.execute("DROP TABLE users; DROP TABLE chain; DROP TABLE fixture; PRAGMA user_version = 11"));
+            db.execute("DROP TABLE users; DROP TABLE chain; DROP TABLE fixture; DROP TABLE outbox; PRAGMA "
+                       "user_version = 11"));
     }
     auto old = ProjectFile::open(folder / "a.seam");
     ASSERT_TRUE(old) << old.error().sentence();

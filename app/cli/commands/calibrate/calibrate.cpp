@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <optional>
 
 #include "app/cli/arguments/board_argument.h"
 #include "app/cli/command.h"
@@ -31,6 +32,7 @@ struct CalibrateArguments {
     std::string data, report, project, sensor, table, example;
     ExcludedIds exclude;
     bool detect_convention = false;
+    std::optional<double> robot_mm, robot_deg;
     std::vector<std::string> pose_convention;  // "CODE" or "LIST=CODE"
     LiveCalibrationArguments live;
 };
@@ -64,6 +66,8 @@ Expected<Given> read_data(const CalibrationMethod& method, const CalibrateArgume
         SEAM_TRY(auto data, read_json_file(a.data));
         given.data = std::move(data);
     }
+    if (a.robot_mm)
+        given.data["robot"] = {{"sigma_mm", *a.robot_mm}, {"sigma_deg", a.robot_deg.value_or(0.0)}};
     for (const std::string& said : a.pose_convention)
         SEAM_OK(say_convention(method.poses, said, where(method), given.data));
     return given;
@@ -199,6 +203,8 @@ Expected<void> check_arguments(const CalibrationMethod& method, const CalibrateA
     if (a.data.empty())
         return usage_error("the data are missing", where(method),
                            "give them, or see their layout with --help and --example FILE.json");
+    if (a.live.live && a.robot_mm)
+        return usage_error("--robot-mm is of data: --live takes what measure-robot found", where(method));
     if (a.live.live && (!a.project.empty() || !a.report.empty() || !a.table.empty() || a.detect_convention))
         return usage_error(
             "--live stores by itself: --store, --report, --table and --detect-convention are of data",
@@ -282,6 +288,15 @@ void add_method(CommandLine& line, CLI::App& group, const CalibrationMethod& met
                          "What the poses' numbers mean, e.g. euler-xyz-extrinsic,rad,m,inverse or quat-xyzw; "
                          "LIST=CODE of another list than base_from_flange; may be repeated")
             ->type_name("[LIST=]CODE");
+    if (method.repeatability) {
+        auto* mm =
+            command
+                ->add_option("--robot-mm", a->robot_mm,
+                             "The robot's repeatability: one standard deviation of an arrival, an axis "
+                             "(about a third of RP; instead of \"robot\" in the data)")
+                ->type_name("MM");
+        command->add_option("--robot-deg", a->robot_deg, "The same of its turn")->type_name("DEG")->needs(mm);
+    }
     if (method.table)
         command->add_option("--table", a->table, "Where the table itself goes")->type_name("TABLE.lut");
     if (images) add_board_options(*command, a->board);

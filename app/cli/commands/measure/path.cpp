@@ -6,11 +6,11 @@
 #include <filesystem>
 
 #include "app/cli/command.h"
-#include "app/cli/commands/measure/path_source.h"
+#include "app/cli/commands/measure/path_arguments.h"
 #include "devices/exchange/files.h"
 #include "devices/registry.h"
 #include "projects/file/project_file.h"
-#include "projects/measure/path.h"
+#include "projects/path/corrected_path.h"
 #include "projects/report/html.h"
 #include "projects/report/svg_plot.h"
 
@@ -21,56 +21,41 @@ using nlohmann::json;
 
 struct PathArguments {
     PathSourceArguments source;
-    std::string file, name = "seamwright_path", report;
+    std::string file, report;
     bool look = false;
     std::filesystem::path folder;
     std::int64_t run = 0;
     PathBlendOptions blend;
-    double speed_mm_s = 100, rounding_mm = 2;
+    PathProgramWords words;
 };
 
 json step_json(const PathStep& s) {
     return {{"from_point", s.from + 1}, {"mm", s.mm}, {"deg", s.deg}};
 }
 
-json answer_json(const PathAnswer& a, std::int64_t run) {
+json answer_json(const CorrectedByRun& corrected) {
+    const PathAnswer& a = corrected.answer;
+    const PathFigures figures = figures_of(a);
     json regions = json::array(), refusals = json::array();
-    for (const std::string& id : a.region_ids) {
-        int inside = 0, blended = 0;
-        for (const PathCorrection& p : a.corrected.points) {
-            const bool whole = p.share <= 0 || p.share >= 1;
-            const auto r = static_cast<std::size_t>(p.share >= 1 ? p.next : p.region);
-            inside += whole && a.region_ids[r] == id;
-            blended += !whole && (a.region_ids[static_cast<std::size_t>(p.region)] == id ||
-                                  a.region_ids[static_cast<std::size_t>(p.next)] == id);
-        }
-        regions.push_back({{"id", id}, {"points", inside}, {"blended_points", blended}});
-    }
+    for (const PathRegionFigures& r : figures.regions)
+        regions.push_back({{"id", r.id}, {"points", r.points}, {"blended_points", r.blended}});
     for (const PathRefusal& r : a.refusals)
         refusals.push_back({{"region", r.region_id},
                             {"first_point", r.points > 0 ? json(r.point + 1) : json()},
                             {"points", r.points},
                             {"reason", r.reason}});
-    double sigma = 0, shift = 0;
-    for (std::size_t i = 0; i < a.corrected.points.size(); ++i) {
-        const PathCorrection& p = a.corrected.points[i];
-        const Eigen::Vector3d moved = p.workobject_from_tool.translation();
-        const Eigen::Vector3d taught = p.displacement.workobject_from_movedworkobject.inverse() * moved;
-        sigma = std::max(sigma, p.sigma_mm);
-        shift = std::max(shift, (moved - taught).norm());
-    }
     return {{"status", a.ok() ? "ok" : "refused"},
-            {"run", run},
+            {"run", corrected.run},
             {"points", a.corrected.points.size()},
             {"length_mm", a.corrected.length_mm},
-            {"largest_shift_mm", shift},
+            {"largest_shift_mm", figures.largest_shift_mm},
             {"largest_step_mm", step_json(a.corrected.largest_mm)},
             {"largest_step_deg", step_json(a.corrected.largest_deg)},
             {"unblended_step_mm", a.corrected.unblended_mm},
             {"curvature_change_per_m", a.corrected.curvature_change_per_m},
             {"curvature_change_at_point", a.corrected.curvature_point + 1},
             {"curvature_per_m", a.corrected.curvature_per_m},
-            {"largest_sigma_mm", sigma},
+            {"largest_sigma_mm", figures.largest_sigma_mm},
             {"regions", regions},
             {"refusals", refusals},
             {"remarks", a.corrected.remarks},
@@ -131,7 +116,7 @@ std::string report_html(const PathAnswer& a, const json& figures, const std::str
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Pose& d = points[i].displacement.workobject_from_movedworkobject;
         const Eigen::Vector3d moved = points[i].workobject_from_tool.translation();
-        const Eigen::Vector3d taught = d.inverse() * moved;
+        const Eigen::Vector3d taught = taught_mm(points[i]);
         for (int axis = 0; axis < 3; ++axis) {
             auto& series = shift.series[static_cast<std::size_t>(axis)];
             series.x.push_back(points[i].length_mm);
@@ -150,26 +135,9 @@ std::string report_html(const PathAnswer& a, const json& figures, const std::str
     return page.html();
 }
 
-Expected<std::vector<ProgramFile>> files_of(const PathArguments& a, const PathAnswer& answer,
-                                            const std::string& brand, PathFrame frame, const Project& setup,
-                                            std::int64_t run) {
-    SEAM_TRY(const auto notation, path_notation_from(brand));
-    std::vector<ProgramFile> files{{a.name + ".csv", path_csv(answer.path, notation)}};
-    PathProgramRequest request;
-    request.name = a.name;
-    request.comment = fmt::format("{}: path corrected by run {}", setup.name, run);
-    if (frame == PathFrame::workobject) request.base_from_frame = setup.part.base_from_workobject;
-    request.speed_mm_s = a.speed_mm_s;
-    request.rounding_mm = a.rounding_mm;
-    for (const ApplicationPoint& p : answer.path.points) request.frame_from_tool.push_back(p.frame_from_tool);
-    if (a.blend.closed) request.frame_from_tool.push_back(request.frame_from_tool.front());
-    SEAM_TRY(auto program, write_robot_path(brand, request));
-    files.insert(files.end(), program.begin(), program.end());
-    return files;
-}
-
 Expected<Answer> look(const PathArguments& a) {
-    SEAM_TRY(auto look, look_at_path(a.source));
+    SEAM_TRY(const auto origin, path_origin(a.source));
+    SEAM_TRY(auto look, look_at_path(origin));
     Answer out;
     out.json = std::move(look.json);
     out.text = std::move(look.text);
@@ -177,48 +145,32 @@ Expected<Answer> look(const PathArguments& a) {
     return out;
 }
 
-Expected<Answer> correct_path(const PathArguments& given) {
-    if (given.look) return look(given);
-    PathArguments a = given;
+Expected<Answer> correct_path(const PathArguments& a) {
+    if (a.look) return look(a);
     if (a.file.empty()) return usage_error("the project is missing", "", "give FILE.seam, or --look");
     if (!a.source.brand.empty()) SEAM_OK(path_notation_from(a.source.brand));
-    SEAM_TRY(auto source, read_path_source(a.source));
+    SEAM_TRY(const auto origin, path_origin(a.source));
+    SEAM_TRY(const auto source, read_path_source(origin));
     const std::string brand = a.source.brand.empty() ? source.brand : a.source.brand;
     if (brand.empty() && !a.folder.empty())
         return usage_error("in whose notation the path is to be written is not said", "",
                            "say --brand kuka, abb or ur");
-    a.blend.closed = a.blend.closed || source.closed;
     SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
-    std::int64_t number = a.run;
-    if (number == 0) {
-        SEAM_TRY(auto runs, file.runs());
-        if (runs.empty())
-            return input_error("the project has no run to correct the path by", a.file,
-                               "measure with `seamwright run` first");
-        number = runs.back().number;
-    }
-    SEAM_TRY(auto run, file.load_run(number, false));
-    SEAM_TRY(auto setup, file.load_run_setup(number));
-    SEAM_TRY(auto answer, correct_application_path(setup, run, source.path, source.frame, a.blend));
+    SEAM_TRY(const auto corrected, correct_by_run(file, a.run, source, a.blend));
 
     Answer out;
-    out.json = answer_json(answer, number);
+    out.json = answer_json(corrected);
     if (source.program)
         for (const Text& remark : source.program->remarks) out.json["remarks"].push_back(remark);
-    out.exit_code = answer.ok() ? kExitOk : kExitVerdict;
-    if (answer.ok() && !a.folder.empty()) {
-        SEAM_TRY(auto files, files_of(a, answer, brand, source.frame, setup, number));
-        std::error_code failed;
-        std::filesystem::create_directories(a.folder, failed);
-        if (failed)
-            return file_error(Text("the folder cannot be made: {}", failed.message()), a.folder.string());
-        for (const ProgramFile& f : files) {
-            const auto target = a.folder / f.name;
-            SEAM_OK(write_text_file(target, f.text));
-            out.json["files"].push_back(target.string());
-        }
+    const bool ok = corrected.answer.ok();
+    out.exit_code = ok ? kExitOk : kExitVerdict;
+    if (ok && !a.folder.empty()) {
+        SEAM_TRY(const auto files, corrected_path_files(corrected, brand, a.words));
+        SEAM_TRY(const auto written, write_program_files(a.folder, files));
+        for (const auto& path : written) out.json["files"].push_back(path.string());
     }
-    if (!a.report.empty()) SEAM_OK(write_text_file(a.report, report_html(answer, out.json, setup.name)));
+    if (!a.report.empty())
+        SEAM_OK(write_text_file(a.report, report_html(corrected.answer, out.json, corrected.setup.name)));
     out.text = answer_text(out.json);
     return out;
 }
@@ -257,11 +209,12 @@ void add_path(CommandLine& line) {
         ->check(CLI::Range(1e-3, 1e5))
         ->capture_default_str();
     command->add_flag("--closed", a->blend.closed, "The path goes on from its last point to its first");
-    command->add_option("--name", a->name, "Of files and program")->capture_default_str();
-    command->add_option("--speed-mm-s", a->speed_mm_s, "Of the program")
+    command->add_option("--name", a->words.name, "Of files and program")->capture_default_str();
+    command->add_option("--speed-mm-s", a->words.speed_mm_s, "Of the program")
         ->check(CLI::Range(0.1, 2000.0))
         ->capture_default_str();
-    command->add_option("--rounding-mm", a->rounding_mm, "How far from a point the robot may round it off")
+    command
+        ->add_option("--rounding-mm", a->words.rounding_mm, "How far from a point the robot may round it off")
         ->check(CLI::Range(0.0, 100.0))
         ->capture_default_str();
     command->add_option("--report", a->report, "HTML with curves of shift, step and sigma")

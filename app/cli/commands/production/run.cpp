@@ -184,6 +184,7 @@ Expected<Answer> watch_project(const RunArguments& a) {
         if (auto kept = keep_headless_proof(station, *run->record); !kept) proof = kept;
     };
     auto counts = watch(station, options);
+    outputs.finish();
     if (isatty(fileno(stderr))) fmt::print(stderr, "\n");
     if (!counts) return tl::unexpected(counts.error());
     if (!proof) return tl::unexpected(proof.error());

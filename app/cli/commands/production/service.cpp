@@ -3,15 +3,17 @@
 #include <fmt/format.h>
 
 #include "app/cli/command.h"
+#include "app/cli/commands/production/fleet.h"
 #include "devices/exchange/files.h"
 #include "projects/file/project_file.h"
+#include "projects/fleet/target.h"
 
 namespace seamwright::cli {
 namespace {
 
 struct ServiceArguments {
     std::string file, out, user, identity, password_file, status, status_token, report_every, report_from,
-        report_to;
+        report_to, fleet, station;
     bool push = false;
     std::int64_t keep = 0;
 };
@@ -47,6 +49,8 @@ Expected<std::string> unit_text(const ServiceArguments& a, const std::filesystem
     add("--status-token", a.status_token.empty() ? "" : absolute(a.status_token));
     add("--report-every", a.report_every);
     add("--report-from", a.report_from);
+    add("--fleet", a.fleet);
+    add("--station", a.station);
     add("--to", a.report_to.empty() ? "" : absolute(a.report_to));
     std::string line;
     for (const std::string& word : words) {
@@ -86,7 +90,18 @@ Expected<std::string> unit_text(const ServiceArguments& a, const std::filesystem
         escaped, line, a.user.empty() ? "" : "User=" + a.user + "\n");
 }
 
+// Everybody on the computer reads units.
+Expected<void> check_fleet(const std::string& url) {
+    if (url.empty()) return {};
+    SEAM_TRY(const auto target, FleetTarget::from(url));
+    if (target.holds_password())
+        return usage_error("a unit is no place for a password, everybody can read it", "--fleet",
+                           "leave it out and write it into ~/.pgpass of the unit's user");
+    return {};
+}
+
 Expected<Answer> service_command(const ServiceArguments& a) {
+    SEAM_OK(check_fleet(a.fleet));
     SEAM_TRY(const auto file, ProjectFile::open(a.file, FileAccess::read_only));
     SEAM_TRY(const auto users, file.users());
     if (a.push && !users.empty() && a.identity.empty())
@@ -143,6 +158,11 @@ void add_service(CommandLine& line) {
         command->add_option("--report-every", a->report_every, "As of run: a report of every 8h")->needs(to);
     to->needs(every);
     command->add_option("--report-from", a->report_from, "As of run: when a shift begins")->needs(every);
+    auto* fleet = add_fleet_option(command, "--fleet", a->fleet,
+                                   "As of run: the fleet's database, without its password");
+    command->add_option("--station", a->station, "As of run: the station's name")
+        ->needs(fleet)
+        ->type_name("NAME");
     line.on(command, [a] { return service_command(*a); });
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/cli/commands/production/fleet.h"
 #include "app/cli/commands/production/service_manager.h"
 #include "devices/capture/capture.h"
 #include "devices/exchange/files.h"
@@ -36,16 +37,29 @@ Expected<std::unique_ptr<ShiftReports>> open_reports(const WatchOutputArguments&
     return std::make_unique<ShiftReports>(std::move(options));
 }
 
-// The first line of the file: what stands on a command line everybody on the computer can read.
-Expected<std::string> read_token(const std::string& path) {
+// Longer than a connection takes to be refused, far shorter than a service manager waits.
+constexpr std::chrono::milliseconds kLastPublishing{8000};
+
+Expected<std::unique_ptr<FleetPublisher>> open_fleet(const WatchOutputArguments& a, ProjectFile& file) {
+    if (a.fleet.empty()) return std::unique_ptr<FleetPublisher>();
+    SEAM_TRY(const auto target, FleetTarget::from(a.fleet));
+    PublisherOptions options;
+    options.station = a.station;
+    options.told = [](const Text& text) { fmt::print(stderr, "{} fleet: {}\n", utc_now(), text); };
+    return FleetPublisher::start(file, target, std::move(options));
+}
+
+}  // namespace
+
+Expected<std::string> read_status_token(const std::string& path) {
     if (path.empty()) return std::string();
     SEAM_TRY(auto text, read_text_file(path));
     std::string token = text.substr(0, text.find('\n'));
     while (!token.empty() && (token.back() == '\r' || token.back() == ' ')) token.pop_back();
+    if (token.empty())
+        return usage_error("the first line of the file is empty", path, "write the token into it");
     return token;
 }
-
-}  // namespace
 
 void add_watch_outputs(CLI::App* command, CLI::Option* watching, WatchOutputArguments& a) {
     auto* to = command
@@ -76,6 +90,14 @@ void add_watch_outputs(CLI::App* command, CLI::Option* watching, WatchOutputArgu
             "this computer")
         ->needs(status)
         ->type_name("FILE");
+    auto* fleet =
+        add_fleet_option(command, "--fleet", a.fleet,
+                         "With --watch: every part into the fleet's database, in the background; what it "
+                         "does not take waits in the project (`fleet publish`)")
+            ->needs(watching);
+    command->add_option("--station", a.station, "With --fleet: the name of this station; else the project's")
+        ->needs(fleet)
+        ->type_name("NAME");
     command->add_option("--report-language", a.language, "en or de, of reports and status page")
         ->needs(watching)
         ->check(CLI::IsMember({"en", "de"}))
@@ -85,10 +107,7 @@ void add_watch_outputs(CLI::App* command, CLI::Option* watching, WatchOutputArgu
 Expected<WatchOutputs> WatchOutputs::open(const WatchOutputArguments& a, Station& station, bool push) {
     WatchOutputs out;
     if (!a.status.empty()) {
-        SEAM_TRY(auto token, read_token(a.status_token));
-        if (!a.status_token.empty() && token.empty())
-            return usage_error("the first line of the file is empty", a.status_token,
-                               "write the token into it");
+        SEAM_TRY(auto token, read_status_token(a.status_token));
         out.board_ = std::make_unique<StatusBoard>(station.project().name, kProgram, push);
         SEAM_TRY(auto server,
                  StatusServer::start(*out.board_, {a.status, token, *language_from(a.language)}));
@@ -98,11 +117,13 @@ Expected<WatchOutputs> WatchOutputs::open(const WatchOutputArguments& a, Station
     }
     SEAM_TRY(auto reports, open_reports(a, station.file().path()));
     out.reports_ = std::move(reports);
+    SEAM_TRY(out.fleet_, open_fleet(a, station.file()));
     return out;
 }
 
 void WatchOutputs::tell(const WatchEvent& event) {
     if (board_) board_->take(event);
+    if (fleet_) tell_fleet(event);
     if (std::holds_alternative<watched::SpotDone>(event.happening)) return;
     std::string line = event.text.english();
     for (char& c : line)
@@ -111,7 +132,27 @@ void WatchOutputs::tell(const WatchEvent& event) {
     if (std::holds_alternative<watched::Stopped>(event.happening)) tell_service_manager("STOPPING=1");
 }
 
+void WatchOutputs::tell_fleet(const WatchEvent& event) {
+    fleet_->measuring(event.state == WatchState::measuring);
+    if (const auto* run = std::get_if<watched::RunDone>(&event.happening))
+        tell_failed(fleet_->part_done(run->record->number));
+}
+
+void WatchOutputs::tell_failed(const Expected<void>& done) {
+    const std::string sentence = done ? std::string() : done.error().sentence();
+    if (!sentence.empty() && sentence != fleet_failed_)
+        fmt::print(stderr, "{} fleet: {}\n", utc_now(), sentence);
+    fleet_failed_ = sentence;
+}
+
+void WatchOutputs::finish() {
+    if (!fleet_) return;
+    if (const auto left = fleet_->finish(kLastPublishing); left > 0)
+        fmt::print(stderr, "{} fleet: {} runs wait in the project\n", utc_now(), left);
+}
+
 void WatchOutputs::alive() {
+    if (fleet_) tell_failed(fleet_->idle());
     const auto now = std::chrono::steady_clock::now();
     if (told_ == std::chrono::steady_clock::time_point{}) tell_service_manager("READY=1");
     if (now - told_ < std::chrono::seconds(1)) return;

@@ -1,8 +1,10 @@
 // seamwright statistics: production in numbers.
 
 #include "app/cli/command.h"
+#include "app/cli/commands/production/fleet.h"
 #include "devices/capture/capture.h"
 #include "devices/exchange/files.h"
+#include "projects/fleet/fleet_statistics.h"
 #include "projects/statistics/statistics_page.h"
 #include "widgets/print/pdf.h"
 
@@ -11,7 +13,8 @@ namespace {
 
 struct StatisticsArguments {
     std::vector<std::string> files;
-    std::string since, until, html, pdf, xlsx, dfq, language = "en";
+    std::vector<std::string> stations;
+    std::string fleet, since, until, html, pdf, xlsx, dfq, language = "en";
     double tolerance_mm = 0;
     CLI::Option* tolerance = nullptr;
     StatisticsOptions options;
@@ -44,6 +47,11 @@ Expected<void> write_files(const StatisticsArguments& a, const Statistics& s, An
     return {};
 }
 
+Expected<Statistics> of_fleet(const StatisticsArguments& a) {
+    SEAM_TRY(const auto target, FleetTarget::from(a.fleet));
+    return fleet_statistics(target, {a.options, a.stations});
+}
+
 Expected<Answer> statistics_command(const StatisticsArguments& given) {
     StatisticsArguments a = given;
     const std::string now = utc_now();
@@ -55,12 +63,12 @@ Expected<Answer> statistics_command(const StatisticsArguments& given) {
     }
     if (a.tolerance->count() > 0) a.options.tolerance_mm = a.tolerance_mm;
     const std::vector<std::filesystem::path> files(a.files.begin(), a.files.end());
-    SEAM_TRY(auto statistics, production_statistics(files, a.options));
+    SEAM_TRY(auto statistics, a.fleet.empty() ? production_statistics(files, a.options) : of_fleet(a));
     Answer answer;
     answer.json = statistics_json(statistics);
     answer.text = statistics_page(statistics, Language::english, "Seamwright " SEAMWRIGHT_VERSION).text();
     SEAM_OK(write_files(a, statistics, answer));
-    answer.exit_code = statistics.production.runs.empty() ? kExitVerdict : kExitOk;
+    answer.exit_code = statistics.parts == 0 ? kExitVerdict : kExitOk;
     return answer;
 }
 
@@ -77,7 +85,14 @@ void add_statistics(CommandLine& line) {
                  "the day on which they reach a limit, why parts were refused, cycle times. Exit 1: no run "
                  "of production.",
                  "seamwright statistics door_left.seam --since 7d --html week.html --xlsx week.xlsx");
-    command->add_option("files", a->files, "Projects with runs")->required()->type_name("FILE.seam");
+    auto* files = command->add_option("files", a->files, "Projects with runs")->type_name("FILE.seam");
+    auto* fleet =
+        add_fleet_option(command, "--fleet", a->fleet,
+                         "Instead of files: all that stations have published there (`fleet publish`)")
+            ->excludes(files);
+    command->add_option("--station", a->stations, "With --fleet: only these stations")
+        ->needs(fleet)
+        ->type_name("NAME");
     command->add_option(
         "--since", a->since,
         "Runs from then on: 2024-05-01, 2024-05-01T06:00 (local time), ...Z (UTC), or 8h, 7d");

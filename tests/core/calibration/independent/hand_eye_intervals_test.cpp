@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "core/calibration/pose/hand_eye.h"
 #include "tests/core/calibration/independent/plain_world.h"
 
@@ -44,7 +47,11 @@ std::vector<HandEyePair> seen(const Case& c, const Motion& camera, const Motion&
     return list;
 }
 
-void run(const Case& c, int trials, Share& truth, Share& halves) {
+// `robot`: as the data state it.
+void run(const Case& c, int trials, Share& truth, Share& halves, const RobotRepeatability& robot = {},
+         double* mean_sigma_mm = nullptr) {
+    double sigmas = 0;
+    int solved = 0;
     for (int trial = 0; trial < trials; ++trial) {
         Dice dice(static_cast<unsigned>(1000 * c.pairs + 7 * trial + 1));
         const bool fixed = c.mount == Mount::eye_to_hand;
@@ -54,9 +61,11 @@ void run(const Case& c, int trials, Share& truth, Share& halves) {
             motion(dice.box(0.8, 0.8, 0.8), fixed ? Vec3(20, 40, 110) : Vec3(1200, 100, 300));
         std::optional<HandEyeResult> first;
         for (int half = 0; half < 2; ++half) {
-            const auto r = calibrate_hand_eye(c.mount, seen(c, camera, target, c.pairs, dice));
+            const auto r = calibrate_hand_eye(c.mount, seen(c, camera, target, c.pairs, dice), {}, robot);
             if (!r || r->status != HandEyeStatus::ok) continue;
             const auto d = off(Motion(r->x.matrix()), camera);
+            sigmas += std::sqrt(r->covariance_x.topLeftCorner<3, 3>().trace() / 3);
+            ++solved;
             for (int k = 0; k < 6; ++k) truth.add(d[k], std::sqrt(r->covariance_x(k, k)));
             if (first) {
                 const auto e = off(Motion(r->x.matrix()), Motion(first->x.matrix()));
@@ -67,6 +76,7 @@ void run(const Case& c, int trials, Share& truth, Share& halves) {
             }
         }
     }
+    if (mean_sigma_mm) *mean_sigma_mm = sigmas / std::max(solved, 1);
 }
 
 TEST(HandEyeIntervals, HoldTheTruthAndTheOtherHalf) {
@@ -93,6 +103,46 @@ TEST(HandEyeIntervals, HoldTheTruthAndTheOtherHalf) {
             EXPECT_GE(all_halves.value(), 0.93);
             EXPECT_LE(all_halves.value(), 0.97);
         }
+}
+
+// What the robot repeats is known from its own study: from few pairs it says more than their scatter does.
+TEST(HandEyeIntervals, AStatedRepeatabilityHoldsAndIsWorthPairs) {
+    for (const Mount mount : {Mount::eye_to_hand, Mount::eye_in_hand})
+        for (const int pairs : {4, 5, 8}) {
+            const Case c{mount, pairs, 0.2, 4e-4, 0.05};
+            Share with, without, halves;
+            double sigma_with = 0, sigma_without = 0;
+            run(c, 200, with, halves, {c.robot_mm, c.robot_rad}, &sigma_with);
+            run(c, 200, without, halves, {}, &sigma_without);
+            with.print(std::string(name_of(mount)) + " " + std::to_string(pairs) + " pairs, stated, sigma " +
+                       std::to_string(sigma_with) + " mm instead of " + std::to_string(sigma_without));
+            EXPECT_GE(with.value(), 0.93) << pairs;
+            EXPECT_LE(with.value(), 0.985) << pairs;
+            if (pairs < 6) {
+                EXPECT_LT(sigma_with, sigma_without) << pairs;
+            }
+        }
+}
+
+// Pairs without a fault do not promise what the robot cannot do.
+TEST(HandEyeIntervals, NeverSurerThanTheStatedRobot) {
+    Dice dice(5);
+    const Motion camera = motion(dice.box(0.8, 0.8, 0.8), Vec3(80, -30, 150));
+    const Motion target = motion(dice.box(0.8, 0.8, 0.8), Vec3(1200, 100, 300));
+    const Case exact{Mount::eye_in_hand, 10, 0, 0, 0};
+    const auto pairs = seen(exact, camera, target, exact.pairs, dice);
+    const auto bare = calibrate_hand_eye(exact.mount, pairs);
+    const auto stated = calibrate_hand_eye(exact.mount, pairs, {}, {0.3, 1e-3});
+    ASSERT_TRUE(bare && stated);
+    const auto sigma = [](const HandEyeResult& r) {
+        return std::sqrt(r.covariance_x.topLeftCorner<3, 3>().trace() / 3);
+    };
+    EXPECT_LT(sigma(*bare), 1e-3);
+    EXPECT_GT(sigma(*stated), 0.3 / std::sqrt(10.0));
+    for (const double bad : {-0.1, 11.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+        EXPECT_FALSE(calibrate_hand_eye(exact.mount, pairs, {}, {bad, 0})) << bad;
+        EXPECT_FALSE(calibrate_hand_eye(exact.mount, pairs, {}, {0.1, bad})) << bad;
+    }
 }
 
 }  // namespace

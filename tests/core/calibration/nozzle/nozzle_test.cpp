@@ -63,8 +63,8 @@ TEST(Nozzle, TheCovarianceOfOneTouchIsTheSumOfItsErrors) {
     target.covariance_mm2.diagonal() = Eigen::Vector3d(0.01, 0.04, 0.09);
     NozzleOptions options;
     options.sigma_mm = 0.1;
-    options.robot_mm = 0.2;
-    options.robot_rad = 1e-3;
+    options.robot.sigma_mm = 0.2;
+    options.robot.sigma_rad = 1e-3;
     const auto r = solved(list, target, options);
     ASSERT_EQ(r.status, NozzleStatus::ok);
     const Eigen::Matrix3d at = list[0].base_from_flange.linear();
@@ -269,7 +269,7 @@ TEST(Nozzle, HostileValuesAreRefusedInOneSentence) {
         EXPECT_THAT(refused(good, target, options), HasSubstr("sigma"));
     }
     NozzleOptions options;
-    options.robot_mm = -1;
+    options.robot.sigma_mm = -1;
     EXPECT_THAT(refused(good, target, options), HasSubstr("repeatability"));
     options = {};
     options.exclude = {"T9"};

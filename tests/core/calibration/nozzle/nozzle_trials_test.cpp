@@ -33,8 +33,8 @@ TEST_P(NozzleCoverage, NinetyFivePercentHoldTheTip) {
     cell.reseed(77);
     NozzleOptions options;
     if (c.stated) options.sigma_mm = cell.hand;
-    options.robot_mm = cell.robot;
-    options.robot_rad = cell.robot_turn;
+    options.robot.sigma_mm = cell.robot;
+    options.robot.sigma_rad = cell.robot_turn;
     Eigen::Matrix3d spread;
     spread << 0.0064, 0.002, 0, 0.002, 0.0036, -0.001, 0, -0.001, 0.01;
     const Eigen::Matrix3d root = spread.llt().matrixL();

@@ -1,4 +1,4 @@
-#include "app/cli/commands/measure/path_source.h"
+#include "app/cli/commands/measure/path_arguments.h"
 
 #include <fmt/format.h>
 
@@ -28,60 +28,6 @@ Expected<void> parse_lines(const std::string& text, ProgramPathOptions& options)
         return usage_error(Text("--lines \"{}\" is no range", text), "",
                            "give the first and the last, 20..85");
     return {};
-}
-
-Expected<ProgramPath> read_program(const PathSourceArguments& a) {
-    ProgramPathOptions options;
-    options.routine = a.routine;
-    options.chord_mm = a.chord_mm;
-    for (const std::string& file : a.also) options.also.emplace_back(file);
-    SEAM_OK(parse_lines(a.lines, options));
-    if (!a.unit.empty()) options.unit_mm = a.unit == "in" ? 25.4 : a.unit == "m" ? 1000 : 1;
-    for (const std::string& given : a.frame_poses) {
-        const auto equals = given.find('=');
-        if (equals == std::string::npos || equals == 0)
-            return usage_error(Text("--frame-pose \"{}\" names no frame", given), "",
-                               R"(give NAME=POSE, as 'UF 1={"xyz":[..],"abc":[..]}')");
-        SEAM_TRY(const auto pose, read_pose_argument(given.substr(equals + 1), given.substr(0, equals)));
-        options.frames[given.substr(0, equals)] = pose;
-    }
-    return read_program_path(a.path, options);
-}
-
-Expected<PathSource> from_drawing(const PathSourceArguments& a) {
-    if (a.drawing.empty() || a.edge.empty())
-        return usage_error("a path from the drawing wants --drawing and --edge", "", "or give --path");
-    DrawingOptions options;
-    options.unit = a.drawing_unit;
-    options.chord_mm = a.chord_mm;
-    options.cancel = stop_on_signal();
-    SEAM_TRY(const auto drawing, read_drawing(a.drawing, options));
-    SEAM_TRY(const auto edge, edge_path(drawing, a.edge, a.edge_options));
-    PathSource source;
-    source.frame = PathFrame::workobject;
-    source.closed = edge.closed;
-    for (const Pose& pose : edge.drawing_from_tool) source.path.points.push_back({pose, {}});
-    return source;
-}
-
-PathFrame frame_of(const PathSourceArguments& a) {
-    return a.frame == "base" ? PathFrame::base : PathFrame::workobject;
-}
-
-Expected<PathSource> from_table(const PathSourceArguments& a) {
-    if (a.brand.empty())
-        return usage_error("a table does not say in whose notation it is", a.path,
-                           "say --brand kuka, abb or ur");
-    SEAM_TRY(const auto notation, path_notation_from(a.brand));
-    PathSource source;
-    SEAM_TRY(source.path, read_path_csv(a.path, notation));
-    source.frame = frame_of(a);
-    source.brand = a.brand;
-    return source;
-}
-
-bool from_the_drawing(const PathSourceArguments& a) {
-    return a.path.empty();
 }
 
 json point_json(std::size_t number, const Pose& pose, const std::string& frame) {
@@ -212,26 +158,48 @@ void add_path_source_options(CLI::App& command, PathSourceArguments& a) {
         ->capture_default_str();
 }
 
-Expected<PathSource> read_path_source(const PathSourceArguments& a) {
+Expected<PathOrigin> path_origin(const PathSourceArguments& a) {
     if (!a.path.empty() && !a.edge.empty())
         return usage_error("a path comes from --path or from --edge, not from both");
-    if (from_the_drawing(a)) return from_drawing(a);
-    if (!program_language_of(a.path)) return from_table(a);
-    PathSource source;
-    SEAM_TRY(source.program, read_program(a));
-    source.frame = frame_of(a);
-    SEAM_TRY(source.path,
-             application_path(*source.program, source.frame == PathFrame::workobject, a.leave_out));
-    source.brand = std::string(brand_of(source.program->language));
-    return source;
+    if (a.path.empty() && (a.drawing.empty() || a.edge.empty()))
+        return usage_error("a path from the drawing wants --drawing and --edge", "", "or give --path");
+    if (!a.path.empty() && !program_language_of(a.path) && a.brand.empty())
+        return usage_error("a table does not say in whose notation it is", a.path,
+                           "say --brand kuka, abb or ur");
+    PathOrigin origin;
+    origin.file = a.path;
+    origin.brand = a.brand;
+    origin.frame = a.frame == "base" ? PathFrame::base : PathFrame::workobject;
+    origin.leave_out = a.leave_out;
+    ProgramPathOptions& program = origin.program;
+    program.routine = a.routine;
+    program.chord_mm = a.chord_mm;
+    for (const std::string& file : a.also) program.also.emplace_back(file);
+    SEAM_OK(parse_lines(a.lines, program));
+    if (!a.unit.empty()) program.unit_mm = a.unit == "in" ? 25.4 : a.unit == "m" ? 1000 : 1;
+    for (const std::string& given : a.frame_poses) {
+        const auto equals = given.find('=');
+        if (equals == std::string::npos || equals == 0)
+            return usage_error(Text("--frame-pose \"{}\" names no frame", given), "",
+                               R"(give NAME=POSE, as 'UF 1={"xyz":[..],"abc":[..]}')");
+        SEAM_TRY(const auto pose, read_pose_argument(given.substr(equals + 1), given.substr(0, equals)));
+        program.frames[given.substr(0, equals)] = pose;
+    }
+    origin.drawing = a.drawing;
+    origin.edge = a.edge;
+    origin.drawing_options.unit = a.drawing_unit;
+    origin.drawing_options.chord_mm = a.chord_mm;
+    origin.drawing_options.cancel = stop_on_signal();
+    origin.edge_options = a.edge_options;
+    return origin;
 }
 
-Expected<PathLook> look_at_path(const PathSourceArguments& a) {
-    if (!from_the_drawing(a) && program_language_of(a.path)) {
-        SEAM_TRY(const auto program, read_program(a));
+Expected<PathLook> look_at_path(const PathOrigin& origin) {
+    if (!origin.file.empty() && program_language_of(origin.file)) {
+        SEAM_TRY(const auto program, read_program_path(origin.file, origin.program));
         return look_at_program(program);
     }
-    SEAM_TRY(const auto source, read_path_source(a));
+    SEAM_TRY(const auto source, read_path_source(origin));
     PathLook look;
     json points = json::array();
     std::size_t number = 0;

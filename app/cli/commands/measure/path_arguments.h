@@ -1,16 +1,12 @@
 #pragma once
-// Where `path` takes its bead from: a table, a robot program, an edge of the drawing.
+// Where `path` takes its bead from, as it is said on the command line, and what --look shows of it.
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "devices/drawing/edge_path.h"
-#include "devices/exchange/tables/path_csv.h"
-#include "devices/robot_path/robot_path.h"
-#include "projects/measure/path.h"
+#include "projects/path/path_source.h"
 
 namespace seamwright::cli {
 
@@ -26,17 +22,10 @@ struct PathSourceArguments {
     EdgePathOptions edge_options;
 };
 
-struct PathSource {
-    ApplicationPath path;
-    PathFrame frame = PathFrame::base;
-    std::string brand;  // in whose notation it is; empty: in none's
-    bool closed = false;
-    std::optional<ProgramPath> program;
-};
-
 void add_path_source_options(CLI::App& command, PathSourceArguments& arguments);
-// Error: what the readers refuse; (usage) neither path nor edge, options of the other's, a brand that must be said.
-Expected<PathSource> read_path_source(const PathSourceArguments& arguments);
+// Error (usage): neither path nor edge, both, a table without its notation, lines that are no range, frames without a name
+// or a pose.
+Expected<PathOrigin> path_origin(const PathSourceArguments& arguments);
 
 // What --look shows: every point, and every line with what became of it. It does not fail for lines that are not understood.
 struct PathLook {
@@ -44,6 +33,6 @@ struct PathLook {
     std::string text;
     bool whole = true;
 };
-Expected<PathLook> look_at_path(const PathSourceArguments& arguments);
+Expected<PathLook> look_at_path(const PathOrigin& origin);
 
 }  // namespace seamwright::cli

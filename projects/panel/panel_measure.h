@@ -67,6 +67,15 @@ RegionCorrection motion_as_correction(const PanelJob& job, const Pose& base_from
 // The poses and the frame of a record by its servo's motion; `servo` is there.
 void place_servo(const PanelJob& job, PanelRecord& record);
 
+// Servoing beside the single step from the same first measurement: gap and flush against taught, rms over all values, mm.
+struct ServoComparison {
+    int moves = 0;
+    double before_rms_mm = 0, after_rms_mm = 0;  // as measured; NaN where it was not
+    double single_rms_mm = 0;                    // as the single step foresees it; NaN without a fit
+    double apart_mm = 0, apart_deg = 0;          // of the two motions; NaN without a fit
+};
+ServoComparison compare_servo(const PanelRecord& record);
+
 // Fit, poses and frame of a record from its `before`, verdict from `after`; what replay computes again.
 // Of a run that servoed the poses are those of its motion.
 void compute_panel(const Project& project, const PanelJob& job, PanelRecord& record);

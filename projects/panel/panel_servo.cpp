@@ -1,8 +1,11 @@
 #include "projects/panel/panel_servo.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "projects/panel/panel_run.h"
+#include "projects/station/check.h"
 
 namespace seamwright {
 namespace {
@@ -42,7 +45,26 @@ class Moving : public PanelRun {
         return v;
     }
 
-    // The motion as the gate judges it. A known one has no covariance.
+    // Of a motion that is known but for the robot: two arrivals of it, in the gripper's own axes. Where the robot's is not
+    // stated, the places' sigma holds it (RobotSetup::arrival_covariance).
+    Matrix6 arrivals() const {
+        Matrix6 c = Matrix6::Zero();
+        const RobotSetup* robot = find_robot(station_.project(), job_.robot_id);
+        if (robot && !robot->arrival_covariance.isZero(0)) {
+            const Eigen::Matrix3d gripper_from_base = job_.base_from_gripper.linear().transpose();
+            Matrix6 turned = Matrix6::Zero();
+            turned.topLeftCorner<3, 3>() = turned.bottomRightCorner<3, 3>() = gripper_from_base;
+            c = 2 * turned * robot->arrival_covariance * turned.transpose();
+            return 0.5 * (c + c.transpose());
+        }
+        double sigma = 0;
+        for (const PanelMeasurement& m : run_.panel->before)
+            sigma = std::max(sigma, place_of(job_, m.place_id).sigma_mm);
+        c.topLeftCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
+        return c;
+    }
+
+    // The motion as the gate judges it.
     RegionCorrection correction(const Pose& motion, const Matrix6& covariance) const {
         PanelFit moved;
         moved.status = CorrectionStatus::ok;
@@ -62,7 +84,8 @@ class Moving : public PanelRun {
             }
             return failed(RunStatus::refused, Text("a move is refused: {}", verdict.reasons.front()));
         }
-        if (cancelled()) return failed(RunStatus::cancelled, "cancelled");
+        // Between two moves a person may end it: everything is taken back.
+        if (options_.cancel.stop_requested()) return failed(RunStatus::cancelled, "cancelled");
         panel().servo->motion = motion;
         place_servo(job_, panel());
         PushRecord push = push_region(std::move(*verdict.pass), *places_.robot, sink());
@@ -121,12 +144,13 @@ class Learning : public Moving {
             const auto at = [&](const Pose& motion) -> Eigen::VectorXd {
                 const Eigen::VectorXd none =
                     Eigen::VectorXd::Zero(2 * static_cast<Eigen::Index>(panel().before.size()));
-                if (failed_ || !move(motion, Matrix6::Zero())) return none;
+                if (failed_ || !move(motion, arrivals())) return none;
                 auto found = values(panel().after);
                 if (!found) failed(RunStatus::device, found.error().text());
                 return found.value_or(none);
             };
             learnt = learn_sensitivity(at, servoing);
+            panel().verdict = judge_panel(job_, panel().after);
             if (failed_)
                 take_all_back(failed_status_, failed_why_);
             else

@@ -9,18 +9,20 @@
 //
 // Sigma of a servo's motion, which the gate judges: the values' own variances through the pseudo-inverse,
 //     C = S+ diag(var of gap, flush, and the places' sigma) S+^T
-// to first order; a learning step is a known motion, of none.
+// to first order. A learning step is a known motion, made as exactly as the robot arrives: twice the covariance of an
+// arrival, or the places' sigma where that is not stated.
 
 #include "core/panel/servoing.h"
 #include "projects/panel/panel_station.h"
 
 namespace seamwright {
 
-// Of the devices: small steps, few moves, and no growth of the deviations.
+// Of the devices: steps within the gap of a body, few moves, and no growth of the deviations. A value's noise n leaves
+// n / (sqrt(2) step) in its sensitivity: 2 % of 0.03 mm.
 inline ServoingOptions device_servoing() {
     ServoingOptions options;
-    options.step_mm = 0.5;
-    options.step_deg = 0.05;
+    options.step_mm = 1;
+    options.step_deg = 0.1;
     options.max_moves = 8;
     options.diverged_at = 1.5;
     return options;

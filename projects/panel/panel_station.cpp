@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "projects/panel/panel_run.h"
+#include "projects/station/acquire.h"
+#include "projects/station/check.h"
 
 namespace seamwright {
 

@@ -27,6 +27,9 @@ TEST_F(ServoCommand, LearnsKeepsAndServesBesideTheSingleStep) {
     ASSERT_GE(servo["moves"].size(), 2u);
     EXPECT_LT(servo["moves"].back()["rms_mm"].get<double>(), servo["moves"].front()["rms_mm"].get<double>());
     EXPECT_LT(servo["single_step"]["apart_mm"].get<double>(), 0.5);
+    EXPECT_EQ(servo["moves_made"].get<std::size_t>() + 1, servo["moves"].size());
+    EXPECT_GT(servo["before_rms_mm"].get<double>(), servo["after_rms_mm"].get<double>());
+    EXPECT_LT(servo["single_step"]["foreseen_rms_mm"].get<double>(), 0.3);
     EXPECT_EQ(a["panel"]["verdict"], "in_tolerance");
     // What was learnt is the project's: the next panel is served by it, dry, and nothing moves.
     const json b = answer({"panel", file, "--servo"}, 0);

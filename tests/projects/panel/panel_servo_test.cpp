@@ -7,8 +7,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stop_token>
 
 #include "devices/simulated/gripper_cell.h"
+#include "projects/panel/panel_measure.h"
 #include "projects/proof/replay.h"
 #include "projects/reuse/simulated_truth.h"
 #include "tests/projects/sample_project.h"
@@ -116,6 +118,11 @@ TEST(PanelServo, LearnsWhatTheGeometrySaysServesAndIsReplayed) {
     EXPECT_GE(servo.moves.size(), 3u);
     EXPECT_LT(servo.moves.back().rms_mm, 0.2 * servo.moves.front().rms_mm);
     EXPECT_LT(bench.off_mm(), 0.3) << "the truth";
+    const ServoComparison beside = compare_servo(*run->panel);
+    EXPECT_EQ(beside.moves, static_cast<int>(servo.moves.size()) - 1);
+    EXPECT_EQ(beside.after_rms_mm, servo.moves.back().rms_mm);
+    EXPECT_LT(beside.single_rms_mm, 0.2)
+        << "nothing is deformed, and the single step would leave noise alone";
     // The single step from the same measurement leads to the same place.
     EXPECT_LT(distance_mm(servo.motion, run->panel->fit->gripper_motion), 0.3);
     EXPECT_LT(deg_from_rad(angle_rad(servo.motion, run->panel->fit->gripper_motion)), 0.05);
@@ -164,6 +171,36 @@ TEST(PanelServo, ASensitivityOfTheWrongSignStopsWhenTheDeviationsGrow) {
     EXPECT_EQ(run->panel->servo->status, ServoingStatus::diverged);
     EXPECT_THAT(run->message.english(), HasSubstr("grow"));
     EXPECT_LT(distance_mm(bench.frame(), before), 1e-6) << "taken back";
+}
+
+// After the first move: the panel out of the sensors' sight, or a person who has seen enough.
+TEST(PanelServo, ALostPlaceAndAPersonsWordTakeTheFirstFrameBack) {
+    for (const bool lost : {true, false}) {
+        ServoBench bench;
+        const auto learnt = learn_panel(bench.station, "panel", device_servoing(), {});
+        ASSERT_TRUE(learnt && learnt->usable);
+        bench.keep(learnt->job);
+        bench.displace();
+        const Pose before = bench.frame();
+        std::stop_source stop;
+        RunOptions options = bench.pushing();
+        options.cancel = stop.get_token();
+        options.progress = [&](const RunProgress& p) {
+            if (p.text.english().find("move 1") == std::string::npos) return;
+            if (!lost) stop.request_stop();
+            PartState gone;
+            gone.workobject_from_movedworkobject.translation().z() = 200;
+            if (lost) bench.cell->set_parts(gone, {});
+        };
+        const auto run = servo_panel(bench.station, "panel", device_servoing(), options);
+        ASSERT_TRUE(run) << run.error().sentence();
+        EXPECT_EQ(run->status, lost ? RunStatus::device : RunStatus::cancelled) << run->message.english();
+        EXPECT_EQ(run->panel->servo->moves.size(), 2u) << "as it came, and the first move";
+        EXPECT_EQ(run->panel->push.status, PushStatus::restored);
+        EXPECT_EQ(run->panel->push.release, Release::withdrawn);
+        EXPECT_LT(distance_mm(bench.frame(), before), 1e-6);
+        EXPECT_THAT(run->message.english(), HasSubstr(lost ? "was not measured" : "cancelled"));
+    }
 }
 
 TEST(PanelServo, RefusesWhatCannotBeInvertedOrWasNotLearnt) {

@@ -188,6 +188,7 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     job.places.resize(1);
     const auto j = to_json_document(job);
     whole(job, j);
+    whole(*job.sensitivity, j["sensitivity"]);
     whole(job.places[0], j["places"][0]);
     Requirements required;
     required.acceptance.tolerance_mm = 1;

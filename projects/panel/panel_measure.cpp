@@ -231,6 +231,9 @@ const Capture& PanelMeasurer::capture(int head) const {
 const Profile& PanelMeasurer::profile() const {
     return impl_->profile;
 }
+const Profile& PanelMeasurer::head_profile(int head) const {
+    return impl_->heads.at(static_cast<std::size_t>(head)).profile;
+}
 double PanelMeasurer::surface_deg() const {
     return impl_->surface_deg;
 }

@@ -36,8 +36,9 @@ class PanelMeasurer {
     const PanelPlace& place() const;
     int heads() const;  // 1 or 2
     const Capture& capture(int head) const;
-    const Profile& profile() const;  // merged, of the last measurement; the place's frame
-    double surface_deg() const;      // of the body's surface there, as the gauge found it
+    const Profile& profile() const;               // merged, of the last measurement; the place's frame
+    const Profile& head_profile(int head) const;  // of one head in it, that head's own frame
+    double surface_deg() const;                   // of the body's surface there, as the gauge found it
 
   private:
     struct Impl;

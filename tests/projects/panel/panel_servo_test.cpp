@@ -12,6 +12,7 @@
 #include "devices/simulated/gripper_cell.h"
 #include "projects/panel/panel_measure.h"
 #include "projects/proof/replay.h"
+#include "projects/reuse/exchange.h"
 #include "projects/reuse/simulated_truth.h"
 #include "tests/projects/sample_project.h"
 
@@ -128,6 +129,13 @@ TEST(PanelServo, LearnsWhatTheGeometrySaysServesAndIsReplayed) {
     EXPECT_LT(deg_from_rad(angle_rad(servo.motion, run->panel->fit->gripper_motion)), 0.05);
     EXPECT_EQ(run->panel->push.release, Release::taken);
     EXPECT_LT(distance_mm(bench.frame(), run->panel->base_from_frame), 1e-3);
+
+    // Every sensor's profiles as files, for `double-head` and whoever looks closer.
+    const auto files =
+        export_profiles(bench.station.file(), run->number, ProfileFormat::csv, bench.folder / "p");
+    ASSERT_TRUE(files) << files.error().sentence();
+    EXPECT_EQ(files->size(), 2 * 2 * bench.project.sensors.size()) << "profile and pose, before and after";
+    EXPECT_TRUE(std::filesystem::exists(bench.folder / "p" / (bench.project.sensors[1].id + "_after.csv")));
 
     // Stored, read back and computed again to the last bit.
     const auto stored = bench.station.file().load_run(run->number);

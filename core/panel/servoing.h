@@ -12,10 +12,14 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <string_view>
 
 #include "core/geometry/pose.h"
 
 namespace seamwright {
+
+// A motion in the gripper's own frame: translation (mm), then rotation vector (rad).
+Pose own_motion(const Vector6& step);
 
 // Sensor values with the gripper at `motion` (start_from_gripper: the sum of all motions so far).
 using ServoValues = std::function<Eigen::VectorXd(const Pose& motion)>;
@@ -26,6 +30,7 @@ struct ServoingOptions {
     double condition_limit = 1e3;  // of the scaled matrix
     double stop_mm = 0.05;         // rms of the values' deviation: reached
     double settle_mm = 0.01;       // a step that moves the values less than this on average: settled
+    double diverged_at = 10;       // times the first deviation: it grows, and nothing moves on
     int max_moves = 20;
 };
 
@@ -36,15 +41,18 @@ struct Sensitivity {
     bool usable = false;             // condition within the limit
     int moves = 0;                   // that the training took
 };
+// The pseudo-inverse and what it rests on, of a matrix learnt before; `scale` as the training steps, mm and rad.
+Sensitivity inverted(const Eigen::MatrixXd& matrix, const ServoingOptions& options);
 Sensitivity learn_sensitivity(const ServoValues& values, const ServoingOptions& options);
 
 enum class ServoingStatus {
     reached,         // rms of the deviation within stop_mm
     settled,         // stands still above it: deformation, or noise
-    diverged,        // the deviation grew tenfold
+    diverged,        // the deviation grew beyond diverged_at times the first one, or is no number
     not_converged,   // max_moves
     ill_conditioned  // the sensitivity cannot be inverted; nothing was moved
 };
+std::string_view to_string(ServoingStatus status);
 struct ServoingResult {
     ServoingStatus status = ServoingStatus::not_converged;
     Pose motion = Pose::Identity();

@@ -86,6 +86,7 @@ class EgmProtocol final : public CyclicProtocol {
     void new_session() override { points_ = std::min(points_, 1); }
     int unproven() const override { return 3; }
     bool stops_unanswered() const override { return true; }
+    bool shifts_along() const override { return false; }
     const char* why_not_told() const override {
         return has_travel_ ? nullptr : "the robot stands, and EGM corrects only a path that moves";
     }

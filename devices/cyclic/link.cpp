@@ -128,8 +128,10 @@ Expected<std::unique_ptr<CyclicLink>> CyclicLink::open(const CyclicLinkSettings&
         SEAM_TRY(auto opened, open_robot(settings.measuring_driver, settings.measuring, session));
         measuring = std::move(opened);
     }
+    CyclicLinkSettings own = settings;
+    own.shifts_along = protocol->shifts_along();
     SEAM_TRY(auto server, CyclicServer::start(settings.server, std::move(protocol)));
-    return std::unique_ptr<CyclicLink>(new CyclicLink(settings, std::move(server), std::move(measuring)));
+    return std::unique_ptr<CyclicLink>(new CyclicLink(own, std::move(server), std::move(measuring)));
 }
 
 Expected<void> CyclicLink::no_alarm() {

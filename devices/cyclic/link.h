@@ -48,6 +48,7 @@ struct CyclicLinkSettings {
     int timeout_ms = 1000, confirm_timeout_ms = 20000;
     std::map<std::string, Pose> taught;  // base_from_frame
     Pose base_from_reference = Pose::Identity(), flange_from_tcp = Pose::Identity();
+    bool shifts_along = true;  // as the protocol says
     std::string measuring_driver;
     nlohmann::json measuring = nlohmann::json::object();
 };
@@ -84,6 +85,7 @@ class CyclicLink : public RobotLink, public SteeredLink {
     const Pose& base_from_reference() const override { return settings_.base_from_reference; }
     const Pose& flange_from_tcp() const override { return settings_.flange_from_tcp; }
     double cycle_s() const override { return settings_.server.cycle_ms / 1e3; }
+    bool shifts_along() const override { return settings_.shifts_along; }
 
     const CyclicServer& server() const { return *server_; }
 

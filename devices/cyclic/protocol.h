@@ -70,6 +70,8 @@ class CyclicProtocol {
     // `released` cannot be told. A robot that has to stop is not answered any more: its program notices by its
     // own time-out, and keeps what it has until it stands.
     virtual bool stops_unanswered() const { return false; }
+    // A shift along the travel is made too. Where it is not, the tool is behind or before the moved place by that much.
+    virtual bool shifts_along() const { return true; }
     virtual const char* why_not_told() const { return nullptr; }  // when tell() answers nothing
 };
 

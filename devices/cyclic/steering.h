@@ -47,6 +47,8 @@ class SteeredLink {
     virtual const Pose& base_from_reference() const = 0;
     virtual const Pose& flange_from_tcp() const = 0;
     virtual double cycle_s() const = 0;
+    // The controller makes the part of a correction along the travel too (RSI), or only what lies across it (EGM).
+    virtual bool shifts_along() const = 0;
 };
 
 }  // namespace seamwright

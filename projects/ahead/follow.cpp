@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/features/kinds/feature_registry.h"
+#include "devices/exchange/files.h"
 #include "devices/exchange/tables/path_csv.h"
 #include "projects/ahead/ahead_sensor.h"
 #include "projects/measure/measure.h"
@@ -78,7 +79,7 @@ Expected<Prepared> prepare(Station& station, const FollowOptions& options) {
                            "limit");
     SEAM_TRY(p.latency_ms, proven_latency(station, *p.calibration, p.sensor_id, p.robot_id, options));
 
-    std::vector<GuidePoint> in_base = options.guide;
+    SEAM_TRY(auto in_base, parse_guide(options.guide_csv, options.guide_name));
     for (GuidePoint& g : in_base) {
         g.point_mm = project.part.base_from_workobject * g.point_mm;
         g.up = project.part.base_from_workobject.linear() * g.up;
@@ -108,7 +109,7 @@ Expected<void> same_sensor(const Prepared& p) {
         p.sensor_id, "calibrate it, or connect the calibrated one");
 }
 
-Text said_of(const SteeringFigures& f, double latency_ms, const Text& guide) {
+Text said_of(const SteeringFigures& f, double latency_ms, const std::string& guide) {
     return Text(
         "online correction by {}: {} features kept, {} implausible, {} beyond the limit, {} profiles without "
         "one; "
@@ -136,7 +137,7 @@ Expected<void> record(Station& station, FollowedRun& followed, const FollowOptio
         SEAM_OK(station.file().update_run(run));
     }
     if (followed.figures.cycles > 0)
-        SEAM_OK(event(EventKind::note, said_of(followed.figures, followed.latency_ms, options.guide_source)));
+        SEAM_OK(event(EventKind::note, said_of(followed.figures, followed.latency_ms, options.guide_name)));
     return {};
 }
 
@@ -150,6 +151,7 @@ Expected<FollowedRun> follow_run(Station& station, RunOptions options, const Fol
     setup.base_from_reference = p.link->base_from_reference();
     setup.flange_from_tcp = p.link->flange_from_tcp();
     setup.cycle_s = p.link->cycle_s();
+    setup.shifts_along = p.link->shifts_along();
     setup.flange_from_looked_at_mm = p.looked_at_mm;
     setup.line = follow.line;
     setup.limit_mm = follow.limit_mm;
@@ -164,6 +166,8 @@ Expected<FollowedRun> follow_run(Station& station, RunOptions options, const Fol
     FollowedRun out;
     out.guide_mm = p.guide->length_mm();
     out.latency_ms = p.latency_ms;
+    SEAM_TRY(const auto kept, station.file().keep_guide(follow.guide_name, follow.guide_csv));
+    std::optional<EventRecord> guided;
     std::shared_ptr<SeamSteering> steering;
     std::unique_ptr<AheadSensor> sensor;
     // The person's word, then the steering: it does nothing before the path is released and runs.
@@ -172,6 +176,16 @@ Expected<FollowedRun> follow_run(Station& station, RunOptions options, const Fol
         const auto region = std::find_if(judged.regions.begin(), judged.regions.end(),
                                          [&](const RegionRecord& r) { return r.region_id == p.region.id; });
         if (region == judged.regions.end() || (asked && !asked(judged))) return false;
+        EventRecord by{0,
+                       utc_now(),
+                       judged.number,
+                       EventKind::note,
+                       p.region.id,
+                       Text("the path is corrected online by guide {} (SHA-256 {})", kept.name, kept.hash)};
+        const auto id = station.file().append_event(by);
+        if (!id) return false;  // what cannot be recorded is not done
+        by.id = *id;
+        guided = std::move(by);
         setup.base_from_moved = region->base_from_frame * p.region.base_from_frame.inverse();
         steering = std::make_shared<SeamSteering>(*p.guide, setup);
         sensor = std::make_unique<AheadSensor>(*p.sensor, std::move(measurer), steering, ahead);
@@ -194,6 +208,8 @@ Expected<FollowedRun> follow_run(Station& station, RunOptions options, const Fol
     }
     if (!run) return tl::unexpected(run.error());
     out.run = *std::move(run);
+    out.guide_hash = kept.hash;
+    if (guided) out.run.events.push_back(std::move(*guided));
     out.base_from_moved = setup.base_from_moved;
     SEAM_OK(record(station, out, follow, p.region.id));
     return out;
@@ -236,13 +252,22 @@ std::string guide_csv(const std::vector<GuidePoint>& guide) {
     return path_csv(path, PathNotation::kuka);
 }
 
-Expected<std::vector<GuidePoint>> read_guide(const std::filesystem::path& path) {
-    SEAM_TRY(const auto table, read_path_csv(path, PathNotation::kuka));
+Expected<std::vector<GuidePoint>> parse_guide(std::string_view csv, const std::string& where) {
+    SEAM_TRY(const auto table, parse_path_csv(csv, PathNotation::kuka, where));
     std::vector<GuidePoint> guide;
     for (const ApplicationPoint& p : table.points)
         guide.push_back({p.frame_from_tool.translation(), p.frame_from_tool.linear().col(2)});
     SEAM_OK(GuideCurve::make(guide));
     return guide;
+}
+
+Expected<NamedGuide> find_guide(const ProjectFile& file, const std::string& called) {
+    std::error_code none;
+    if (!std::filesystem::exists(called, none))
+        if (auto kept = file.load_guide(called)) return NamedGuide{kept->name, kept->csv};
+    SEAM_TRY(auto csv, read_text_file(called));
+    SEAM_OK(parse_guide(csv, called));
+    return NamedGuide{std::filesystem::path(called).filename().string(), std::move(csv)};
 }
 
 }  // namespace seamwright

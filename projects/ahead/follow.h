@@ -10,6 +10,9 @@
 //
 // An alarm of the steering or of the link leads the correction back and stops the path; the run is then an `alarm`
 // with its reason, the frames are taken back. What was told is an event of the run in any case.
+//
+// The guide's table is kept in the project before anything moves (ProjectFile::keep_guide), and an event of the run names
+// it with its hash: what the path was corrected by is known as long as the project.
 
 #include <string>
 #include <vector>
@@ -24,8 +27,8 @@ struct FollowOptions {
     std::string region_id;             // empty: the project's only one
     std::string sensor_id;             // empty: that of the spot
     std::string spot_id;               // whose recipe finds the contour; empty: the region's first
-    std::vector<GuidePoint> guide;     // the contour as taught, work object
-    Text guide_source;                 // where it comes from, for the record
+    std::string guide_csv;             // the contour as taught, work object: guide_csv()
+    std::string guide_name;            // of its file, or where it comes from; for people
     std::optional<double> latency_ms;  // from the trigger to the exposure, as a person states it
     double limit_mm = 3;
     DelayLineOptions line;
@@ -36,6 +39,7 @@ struct FollowedRun {
     RunRecord run;
     SteeringFigures figures;
     double guide_mm = 0, latency_ms = 0;
+    std::string guide_hash;                   // as the project keeps it
     Pose base_from_moved = Pose::Identity();  // of the frame that was pushed, with the displacement taken off
 };
 
@@ -51,6 +55,13 @@ inline constexpr double kGuideStepMm = 2, kGuideHalfWidthMm = 10;
 // As a table of poses in the work object (KUKA notation, devices/exchange/tables/path_csv.h): X across, Y along, Z up.
 // An edge of the drawing as `seamwright path` takes it is one too.
 std::string guide_csv(const std::vector<GuidePoint>& guide);
-Expected<std::vector<GuidePoint>> read_guide(const std::filesystem::path& path);
+// `where` is for the error.
+Expected<std::vector<GuidePoint>> parse_guide(std::string_view csv, const std::string& where);
+
+// What `called` names: the file of that name, or, where there is none, the guide that the project keeps of it.
+struct NamedGuide {
+    std::string name, csv;
+};
+Expected<NamedGuide> find_guide(const ProjectFile& file, const std::string& called);
 
 }  // namespace seamwright

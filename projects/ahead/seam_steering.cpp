@@ -142,10 +142,31 @@ SeamSteering::Wanted SeamSteering::wanted(const CyclicPacket& packet, const Eige
     return on_guide(p, foot, present_mm);
 }
 
+// Where the frame takes a tool that is as far off the guide at `s_mm` as it is at `foot`; base.
+Eigen::Vector3d SeamSteering::moved_tool(const GuideCurve::Foot& foot, double s_mm) const {
+    return setup_.base_from_moved *
+           (guide_.at(s_mm) + guide_.directions(s_mm).rightCols<2>() * foot.off_mm).eval();
+}
+
+// The place that the tool is at, whose controller makes no shift along the travel (s' of above). Each step leaves the
+// product of what is missing and the angle between moved and programmed travel. Precondition: locked.
+double SeamSteering::place_across(const Eigen::Vector3d& p, const GuideCurve::Foot& foot) const {
+    constexpr int kSteps = 4;
+    const Eigen::Vector3d travel = guide_.directions(foot.s_mm).col(0);
+    double s = foot.s_mm;
+    for (int i = 0; i < kSteps; ++i) {
+        const Eigen::Vector3d found = guide_.directions(s).rightCols<2>() * line_.at(s).off_mm;
+        s -= travel.dot(moved_tool(foot, s) + setup_.base_from_moved.linear() * found - p);
+    }
+    return s;
+}
+
 // Precondition: locked.
 SeamSteering::Wanted SeamSteering::on_guide(const Eigen::Vector3d& p, const GuideCurve::Foot& foot,
                                             const Eigen::Vector3d& present_mm) {
-    const AheadOffset known = line_.at(foot.s_mm);
+    const double s_mm = setup_.shifts_along ? foot.s_mm : place_across(p, foot);
+    if (!(s_mm >= 0 && s_mm <= guide_.length_mm())) return {held_, Eigen::Vector3d::Zero(), {}};
+    const AheadOffset known = line_.at(s_mm);
     // The sensor has come to the guide's end: there is nothing more to know.
     const bool at_end = known.state == AheadState::behind && sensor_beyond_;
     if (known.state == AheadState::nothing) return {held_, Eigen::Vector3d::Zero(), {}};
@@ -153,7 +174,7 @@ SeamSteering::Wanted SeamSteering::on_guide(const Eigen::Vector3d& p, const Guid
         return refuse(Text(
             "online correction: the tool is {:.1f} mm behind the newest measure: the sensor does not run "
             "ahead, or its profiles come too late",
-            foot.s_mm - line_.newest_mm()));
+            s_mm - line_.newest_mm()));
     if (known.state == AheadState::lost)
         return refuse(
             Text("online correction: the tool came to a stretch of more than {:.1f} mm without a contour",
@@ -166,15 +187,21 @@ SeamSteering::Wanted SeamSteering::on_guide(const Eigen::Vector3d& p, const Guid
         return refuse(
             Text("online correction: the contour lies {:.2f} mm off the frame, beyond the limit of {:.2f} mm",
                  known.off_mm.norm(), setup_.limit_mm));
-    line_.forget_before(foot.s_mm);
+    line_.forget_before(s_mm);
     figures_.largest_sigma_mm = std::max(figures_.largest_sigma_mm, sigma);
     if (!sensor_beyond_)
-        figures_.least_ahead_mm = std::min(figures_.least_ahead_mm, line_.newest_mm() - foot.s_mm);
+        figures_.least_ahead_mm = std::min(figures_.least_ahead_mm, line_.newest_mm() - s_mm);
     const Eigen::Matrix3d to_reference =
         setup_.base_from_reference.linear().transpose() * setup_.base_from_moved.linear();
-    const Eigen::Matrix<double, 3, 2> across = to_reference * guide_.directions(foot.s_mm).rightCols<2>();
+    const Eigen::Matrix<double, 3, 2> across = to_reference * guide_.directions(s_mm).rightCols<2>();
     Wanted wanted;
     wanted.offset_mm = across * known.off_mm;
+    if (!setup_.shifts_along) {
+        const Eigen::Matrix3d reference_from_base = setup_.base_from_reference.linear().transpose();
+        wanted.offset_mm += reference_from_base * (moved_tool(foot, s_mm) - setup_.base_from_moved * p);
+        const Eigen::Vector3d travel = reference_from_base * guide_.directions(foot.s_mm).col(0);
+        wanted.offset_mm -= travel.dot(wanted.offset_mm) * travel;
+    }
     const Eigen::Vector3d of_frame = setup_.base_from_moved * p - p;
     const double total = (of_frame + setup_.base_from_reference.linear() * wanted.offset_mm).norm();
     if (!(total <= std::max(setup_.total_limit_mm, of_frame.norm())))

@@ -9,8 +9,13 @@
 // is wanted on top of B p - p. A part that is where the frame says has v = 0. Nothing depends on the time: override and
 // stops change nothing. Along the path nothing is corrected.
 //
-// EGM makes neither the shift along the travel nor the rotation of B (devices/abb/egm.h): there the offset of s comes
-// to lie at the place without that shift, which on a curve of radius R is off by shift^2 / 2R.
+// A controller that makes no shift along the travel t (EGM, devices/abb/egm.h) has its tool in the plane across t through
+// p, not at B p. There belongs the place s' of the moved path that lies in that plane: with q(s') as far off the guide as
+// p is,
+//     t . (B q(s') + R_B v(s') - p) = 0,   and wanted is the part across t of  B q(s') + R_B v(s') - B p.
+// So neither the curve (shift^2 / 2R on a radius of R) nor a turn of B (shift times angle) nor the slope of what was found
+// is left over. The tool path is taken to keep its distance off the guide over the shift. The tool needs the measures of
+// s', which for a part that lies back lies nearer to the sensor by the shift.
 //
 // Ended by an alarm, which leads everything back and stops the path, are: a stretch without a feature longer than
 // DelayLineOptions::most_gap_mm, seen at the sensor and not only at the tool; a tool that has come behind the newest
@@ -36,6 +41,7 @@ struct SteeringSetup {
     // Where the sensor looks: the point of its profile at which the contour was taught.
     Eigen::Vector3d flange_from_looked_at_mm = Eigen::Vector3d::Zero();
     Pose base_from_moved = Pose::Identity();  // B
+    bool shifts_along = true;                 // of SteeredLink
     DelayLineOptions line;
     double limit_mm = 3, sigma_limit_mm = 0.1;
     double total_limit_mm = 25;  // of B p - p + v
@@ -84,6 +90,8 @@ class SeamSteering final : public PathSteering {
     std::optional<Text> lost_at_sensor();
     Wanted on_guide(const Eigen::Vector3d& p, const GuideCurve::Foot& foot,
                     const Eigen::Vector3d& present_mm);
+    Eigen::Vector3d moved_tool(const GuideCurve::Foot& foot, double s_mm) const;
+    double place_across(const Eigen::Vector3d& p, const GuideCurve::Foot& foot) const;
 
     const GuideCurve guide_;
     const SteeringSetup setup_;

@@ -211,12 +211,13 @@ Expected<std::unique_ptr<SimulatedSeam>> SimulatedSeam::make(const SimulatedSeam
         project = station.project();
         followed_spot(project).feature = rim_template(pass.sections[pass.sections.size() / 2].profile);
         SEAM_OK(station.edit(project));
-        SEAM_TRY(seam->follow_.guide, taught_guide(project, kFollowedSpot, pass));
+        SEAM_TRY(const auto guide, taught_guide(project, kFollowedSpot, pass));
+        seam->follow_.guide_csv = guide_csv(guide);
         station.disconnect();
     }
     seam->follow_.region_id = "seam";
     seam->follow_.spot_id = kFollowedSpot;
-    seam->follow_.guide_source = "the pass over the undisplaced part";
+    seam->follow_.guide_name = "the pass over the undisplaced part";
 
     cell->store_program(measuring_program(project, "R1"));
     nlohmann::json controller = {

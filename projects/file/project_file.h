@@ -75,6 +75,16 @@ struct StoredScan {
 };
 inline constexpr std::size_t kLargestScan = std::size_t{512} << 20;  // bytes of cloud_ply
 
+// The contour that a path was corrected online by (projects/ahead/follow.h), as its table stood; kept as long as the file,
+// so that a run can be computed again. No part of a run's setup: the run's event names its hash.
+struct StoredGuide {
+    std::string name;  // of its file, for people; several guides may have one
+    std::string csv;   // to the byte
+    std::string utc;   // when it was kept first, ISO 8601
+    std::string hash;  // SHA-256 of csv, hex, lower case
+};
+inline constexpr std::size_t kLargestGuide = std::size_t{64} << 20;  // bytes of csv
+
 // The project a run is made with, as its record refers to it: made before the robot waits for it.
 class RunSetup {
   public:
@@ -203,6 +213,13 @@ class ProjectFile {
     // Error (input) where there is none of that name.
     Expected<StoredScan> load_scan(const std::string& name) const;
     Expected<void> delete_scan(const std::string& name);
+
+    // What is kept already stays as it is, by its hash. Answers it with hash and time. Error (input): no csv, or one above
+    // kLargestGuide.
+    Expected<StoredGuide> keep_guide(const std::string& name, const std::string& csv);
+    Expected<std::vector<StoredGuide>> guides() const;  // oldest first
+    // By its hash, the first 8 figures of it or more, or by its name: the newest one. Error (input) where there is none.
+    Expected<StoredGuide> load_guide(const std::string& called) const;
 
     // --- users; the first one is an administrator, and the last administrator stays while there are others
     Expected<std::vector<User>> users() const;  // none: nobody is asked

@@ -33,6 +33,7 @@ SEAMWRIGHT_WORDS(PanelDeviation, "share", "leave_out");
 SEAMWRIGHT_WORDS(PanelVerdict, "not_verified", "in_tolerance", "out_of_tolerance");
 SEAMWRIGHT_WORDS(Verdict, "good", "usable", "poor", "undetermined");
 SEAMWRIGHT_WORDS(ShiftKind, "translation", "rotation", "both");
+SEAMWRIGHT_WORDS(ServoingStatus, "reached", "settled", "diverged", "not_converged", "ill_conditioned");
 #undef SEAMWRIGHT_WORDS
 
 namespace {
@@ -435,6 +436,15 @@ void describe(A& a, PanelPlace& v) {
     a("sigma_mm", v.sigma_mm);
 }
 template <class A>
+void describe(A& a, PanelSensitivity& v) {
+    a("places", v.places);
+    a("rows", v.rows);
+    a("step_mm", v.step_mm);
+    a("step_deg", v.step_deg);
+    a("condition", v.condition);
+    a("utc", v.utc);
+}
+template <class A>
 void describe(A& a, PanelJob& v) {
     a("id", v.id);
     a("robot_id", v.robot_id);
@@ -449,6 +459,8 @@ void describe(A& a, PanelJob& v) {
     a("deviation", v.deviation);
     a("frame_name", v.frame_name);
     a("base_from_frame", v.base_from_frame);
+    // Only where it was learnt: a program that knows none of it reads the others.
+    if (A::reading || v.sensitivity) a("sensitivity", v.sensitivity);
 }
 template <class A>
 void describe(A& a, AcceptanceRequirements& v) {
@@ -740,6 +752,17 @@ void describe(A& a, PanelFit& v) {
     a("message", v.message);
 }
 template <class A>
+void describe(A& a, PanelServoMove& v) {
+    a("motion", v.motion);
+    a("rms_mm", v.rms_mm);
+}
+template <class A>
+void describe(A& a, PanelServo& v) {
+    a("status", v.status);
+    a("moves", v.moves);
+    a("motion", v.motion);
+}
+template <class A>
 void describe(A& a, PanelRecord& v) {
     a("job_id", v.job_id);
     a("before", v.before);
@@ -752,6 +775,7 @@ void describe(A& a, PanelRecord& v) {
     a("refusals", v.refusals);
     a("push", v.push);
     a("verdict", v.verdict);
+    if (A::reading || v.servo) a("servo", v.servo);
 }
 
 // --- evidence

@@ -717,7 +717,8 @@ std::vector<Error> ProjectFile::check() const {
     else
         for (const Evidence& e : *proven) check_setup(e.setup);
     if (auto points = drift_points(); !points) findings.push_back(points.error());
-    if (auto kept = check_rows(db, "scans"); !kept) findings.push_back(kept.error());
+    for (const char* table : {"scans", "guides"})
+        if (auto kept = check_rows(db, table); !kept) findings.push_back(kept.error());
     auto list = runs();
     if (!list) {
         findings.push_back(list.error());

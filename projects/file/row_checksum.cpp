@@ -9,7 +9,7 @@
 namespace seamwright {
 namespace {
 
-constexpr std::array<ChecksummedTable, 26> kTables{{
+constexpr std::array<ChecksummedTable, 27> kTables{{
     {"project", "name", "id, name, created_utc"},
     {"requirements", "id", "id, body"},
     {"part", "id", "id, body, mesh"},
@@ -28,6 +28,7 @@ constexpr std::array<ChecksummedTable, 26> kTables{{
     {"users", "id", "id, role, password, created_utc", 12},
     {"fixture", "id", "id, position, body", 12},
     {"scans", "name", "id, name, utc, sensor_id, robot_id, path, profiles, points, cloud", 10},
+    {"guides", "hash", "hash, name, utc, csv", 14},
     {"setups", "id", "id, crc, body"},
     {"runs", "number", "number, part_id, started_utc, finished_utc, push, status, message, setup"},
     {"run_spots", "run", "run, position, spot_id, status, body"},

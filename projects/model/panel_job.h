@@ -6,6 +6,7 @@
 // place one sensor, or a double head of two (core/panel/double_head.h), sees panel and body in one profile;
 // the place's frame is that of its sensor, of a double head the one midway between both.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +36,17 @@ struct PanelPlace {
     double sigma_mm = 0.05;  // of an observed coordinate, beside the gauge's own
 };
 
+// How gap and flush at the job's places answer a motion of the gripper (thesis 2.5.1), learnt on the cell by known small
+// moves (projects/panel/panel_servo.h).
+struct PanelSensitivity {
+    std::vector<std::string> places;  // enabled ones when it was learnt, two rows each: gap, then flush
+    // Per mm along x, y, z and per rad about them, in the gripper's own frame.
+    std::vector<std::array<double, 6>> rows;
+    double step_mm = 0, step_deg = 0;  // of the moves, to either side
+    double condition = 0;              // of the matrix scaled by them
+    std::string utc;                   // when, ISO 8601
+};
+
 struct PanelJob {
     std::string id;  // "door left"
     std::string robot_id;
@@ -47,8 +59,9 @@ struct PanelJob {
     double head_limit_mm = 0.15;  // largest disagreement of a double head
     // Of a place that contradicts the others (a bent panel).
     PanelDeviation deviation = PanelDeviation::share;
-    std::string frame_name;                   // on the controller: what the panel is put in by
-    Pose base_from_frame = Pose::Identity();  // taught, for panel and body in their zero relation
+    std::string frame_name;                       // on the controller: what the panel is put in by
+    Pose base_from_frame = Pose::Identity();      // taught, for panel and body in their zero relation
+    std::optional<PanelSensitivity> sensitivity;  // absent: not learnt
 };
 
 }  // namespace seamwright

@@ -12,6 +12,7 @@
 #include "core/correction/correction.h"
 #include "core/features/feature.h"
 #include "core/panel/panel_fit.h"
+#include "core/panel/servoing.h"
 #include "core/profile/profile.h"
 #include "core/profile/stripe/stripe_light.h"
 #include "core/text.h"
@@ -119,6 +120,18 @@ enum class PanelVerdict {
 };
 std::string_view to_string(PanelVerdict verdict);
 
+// Servoing (core/panel/servoing.h) in place of the single step: the motion in several moves.
+struct PanelServoMove {
+    Pose motion =
+        Pose::Identity();  // base_from_gripper of the first measurement to where it stood, its own frame
+    double rms_mm = 0;     // of gap and flush against taught, measured there
+};
+struct PanelServo {
+    ServoingStatus status = ServoingStatus::not_converged;
+    std::vector<PanelServoMove> moves;  // the first one is where it was measured first, moved by nothing
+    Pose motion = Pose::Identity();     // of all moves
+};
+
 struct PanelRecord {
     std::string job_id;
     std::vector<PanelMeasurement> before, after;  // enabled places; `after` the motion, empty without one
@@ -130,6 +143,8 @@ struct PanelRecord {
     std::vector<Text> refusals;
     PushRecord push;
     PanelVerdict verdict = PanelVerdict::not_verified;
+    // Of a run that servoed: where the gripper goes is its motion, and `fit` the single step beside it.
+    std::optional<PanelServo> servo;
 };
 
 enum class EventKind { note, refusal, push_attempt, push, alarm, device };

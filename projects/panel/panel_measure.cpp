@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/geometry/notation.h"
 #include "core/panel/double_head.h"
@@ -230,6 +231,9 @@ const Capture& PanelMeasurer::capture(int head) const {
 const Profile& PanelMeasurer::profile() const {
     return impl_->profile;
 }
+const Profile& PanelMeasurer::head_profile(int head) const {
+    return impl_->heads.at(static_cast<std::size_t>(head)).profile;
+}
 double PanelMeasurer::surface_deg() const {
     return impl_->surface_deg;
 }
@@ -358,6 +362,36 @@ RegionCorrection motion_as_correction(const PanelJob& job, const Pose& base_from
     return c;
 }
 
+void place_servo(const PanelJob& job, PanelRecord& record) {
+    PanelFit moved;
+    moved.gripper_motion = record.servo->motion;
+    record.base_from_moved_gripper = moved_gripper(record.base_from_gripper, moved);
+    record.base_from_frame = corrected_frame(
+        job.base_from_gripper, motion_as_correction(job, record.base_from_gripper, moved).displacement,
+        job.base_from_frame);
+}
+
+ServoComparison compare_servo(const PanelRecord& record) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    ServoComparison out{0, kNone, kNone, kNone, kNone, kNone};
+    const std::vector<PanelServoMove>& moves = record.servo->moves;
+    if (!moves.empty()) {
+        out.moves = static_cast<int>(moves.size()) - 1;
+        out.before_rms_mm = moves.front().rms_mm;
+        out.after_rms_mm = moves.back().rms_mm;
+    }
+    if (!record.fit) return out;
+    double squares = 0;
+    int values = 0;
+    for (const PanelSpotResult& s : record.fit->spots)
+        for (const double v : {s.remaining.gap_mm, s.remaining.flush_mm})
+            if (std::isfinite(v)) squares += v * v, ++values;
+    if (values > 0) out.single_rms_mm = std::sqrt(squares / values);
+    out.apart_mm = distance_mm(record.servo->motion, record.fit->gripper_motion);
+    out.apart_deg = deg_from_rad(angle_rad(record.servo->motion, record.fit->gripper_motion));
+    return out;
+}
+
 void compute_panel(const Project& project, const PanelJob& job, PanelRecord& record) {
     record.fit.reset();
     record.base_from_moved_gripper = record.base_from_gripper;
@@ -374,6 +408,7 @@ void compute_panel(const Project& project, const PanelJob& job, PanelRecord& rec
         if (std::find(record.refusals.begin(), record.refusals.end(), reason) == record.refusals.end())
             record.refusals.push_back(reason);
     }
+    if (record.servo) place_servo(job, record);
     record.verdict = judge_panel(job, record.after);
 }
 

@@ -36,8 +36,9 @@ class PanelMeasurer {
     const PanelPlace& place() const;
     int heads() const;  // 1 or 2
     const Capture& capture(int head) const;
-    const Profile& profile() const;  // merged, of the last measurement; the place's frame
-    double surface_deg() const;      // of the body's surface there, as the gauge found it
+    const Profile& profile() const;               // merged, of the last measurement; the place's frame
+    const Profile& head_profile(int head) const;  // of one head in it, that head's own frame
+    double surface_deg() const;                   // of the body's surface there, as the gauge found it
 
   private:
     struct Impl;
@@ -64,7 +65,20 @@ Pose moved_gripper(const Pose& base_from_gripper, const PanelFit& fit);
 RegionCorrection motion_as_correction(const PanelJob& job, const Pose& base_from_gripper,
                                       const PanelFit& fit);
 
+// The poses and the frame of a record by its servo's motion; `servo` is there.
+void place_servo(const PanelJob& job, PanelRecord& record);
+
+// Servoing beside the single step from the same first measurement: gap and flush against taught, rms over all values, mm.
+struct ServoComparison {
+    int moves = 0;
+    double before_rms_mm = 0, after_rms_mm = 0;  // as measured; NaN where it was not
+    double single_rms_mm = 0;                    // as the single step foresees it; NaN without a fit
+    double apart_mm = 0, apart_deg = 0;          // of the two motions; NaN without a fit
+};
+ServoComparison compare_servo(const PanelRecord& record);
+
 // Fit, poses and frame of a record from its `before`, verdict from `after`; what replay computes again.
+// Of a run that servoed the poses are those of its motion.
 void compute_panel(const Project& project, const PanelJob& job, PanelRecord& record);
 
 }  // namespace seamwright

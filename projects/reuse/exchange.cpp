@@ -13,6 +13,7 @@
 #include "devices/exchange/tables/profile_csv.h"
 #include "projects/file/project_json.h"
 #include "projects/measure/measure.h"
+#include "projects/panel/panel_measure.h"
 
 namespace seamwright {
 namespace {
@@ -135,23 +136,14 @@ Expected<std::vector<fs::path>> export_profiles(const ProjectFile& file, std::in
         if (done) files.push_back(path);
         return done;
     };
-    for (const SpotMeasurement& m : run.spots) {
-        if (m.capture < 0 || static_cast<std::size_t>(m.capture) >= run.captures.size()) continue;
-        const Capture& capture = run.captures[static_cast<std::size_t>(m.capture)];
-        SEAM_TRY(auto measurer, SpotMeasurer::make(setup, m.spot_id));
-        measurer.measure(capture);
-        const Profile& profile = measurer.profile();
-        if (profile.size() == 0) continue;
-        const std::string stem = file_stem(m.spot_id, taken);
-        const Pose base_from_flange = capture.base_from_flange.value_or(measurer.spot().base_from_flange);
+    const auto put = [&](const std::string& id, const Profile& profile, const Pose& base_from_flange,
+                         const Calibration* calibration) -> Expected<void> {
+        if (profile.size() == 0) return {};
+        const fs::path stem = folder / file_stem(id, taken);
         if (format == ProfileFormat::csv) {
-            SEAM_OK(write(folder / (stem + ".csv"), profile_csv(profile)));
-            if (auto done = write(folder / (stem + ".json"), pose_json(base_from_flange).dump(1) + "\n");
-                !done)
-                return tl::unexpected(done.error());
-            continue;
+            SEAM_OK(write(fs::path(stem) += ".csv", profile_csv(profile)));
+            return write(fs::path(stem) += ".json", pose_json(base_from_flange).dump(1) + "\n");
         }
-        const Calibration* calibration = calibration_of(setup, measurer.spot());
         const Pose base_from_sensor =
             base_from_flange * (calibration ? calibration->flange_from_sensor : Pose::Identity());
         std::vector<Eigen::Vector3d> points;
@@ -160,10 +152,40 @@ Expected<std::vector<fs::path>> export_profiles(const ProjectFile& file, std::in
                 profile.segment[i] != kOutlier)
                 points.push_back(base_from_sensor * Eigen::Vector3d(profile.x_mm[i], 0, profile.z_mm[i]));
         const bool ply = format == ProfileFormat::ply;
-        if (auto done =
-                write(folder / (stem + (ply ? ".ply" : ".pcd")), ply ? ply_text(points) : pcd_text(points));
-            !done)
-            return tl::unexpected(done.error());
+        return write(fs::path(stem) += (ply ? ".ply" : ".pcd"), ply ? ply_text(points) : pcd_text(points));
+    };
+    const auto capture_of = [&](int at) {
+        return at >= 0 && static_cast<std::size_t>(at) < run.captures.size()
+                   ? &run.captures[static_cast<std::size_t>(at)]
+                   : nullptr;
+    };
+    for (const SpotMeasurement& m : run.spots) {
+        const Capture* capture = capture_of(m.capture);
+        if (!capture) continue;
+        SEAM_TRY(auto measurer, SpotMeasurer::make(setup, m.spot_id));
+        measurer.measure(*capture);
+        SEAM_OK(put(m.spot_id, measurer.profile(),
+                    capture->base_from_flange.value_or(measurer.spot().base_from_flange),
+                    calibration_of(setup, measurer.spot())));
+    }
+    const PanelJob* job = run.panel ? find_panel_job(setup, run.panel->job_id) : nullptr;
+    for (const bool before : {true, false}) {
+        if (!job) break;
+        for (const PanelMeasurement& m : before ? run.panel->before : run.panel->after) {
+            const auto place = std::find_if(job->places.begin(), job->places.end(),
+                                            [&](const PanelPlace& p) { return p.id == m.place_id; });
+            const Capture* first = capture_of(m.capture);
+            if (!first || place == job->places.end()) continue;
+            SEAM_TRY(auto measurer, PanelMeasurer::make(setup, *job, *place));
+            measurer.measure(*first, capture_of(m.second_capture));
+            const Pose& stood = before ? run.panel->base_from_gripper : run.panel->base_from_moved_gripper;
+            for (int head = 0; head < measurer.heads(); ++head) {
+                const std::string& sensor = head == 0 ? place->sensor_id : place->second_sensor_id;
+                SEAM_OK(put(fmt::format("{}_{}", sensor, before ? "before" : "after"),
+                            measurer.head_profile(head), first->base_from_flange.value_or(stood),
+                            calibration_of(setup, sensor)));
+            }
+        }
     }
     return files;
 }

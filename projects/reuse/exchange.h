@@ -26,7 +26,8 @@ Expected<Project> import_project(const nlohmann::json& document, const std::stri
 
 enum class ProfileFormat { csv, ply, pcd };
 // Profiles of a run, one file per spot (`<spot>.csv`: x_mm,z_mm[,intensity],valid,segment in the sensor
-// frame; PLY/PCD: points in base, millimetres). Returns the files written.
+// frame; PLY/PCD: points in base, millimetres), of a panel's run one per sensor, `<sensor>_before` and `<sensor>_after` the
+// motion. Returns the files written.
 Expected<std::vector<std::filesystem::path>> export_profiles(const ProjectFile& file, std::int64_t run,
                                                              ProfileFormat format,
                                                              const std::filesystem::path& folder);
@@ -71,8 +72,8 @@ struct RecordingLook {
         std::string name, spot_id;
         std::string understood;  // or why it cannot be read
         bool readable = false, image = false;
-        ProfileScale scale;  // of the heights that are some
-        Text no_returns;     // what stands for none; empty: nothing
+        ProfileScale scale;                        // of the heights that are some
+        Text no_returns;                           // what stands for none; empty: nothing
         std::vector<Eigen::Vector2d> first;        // points
         int width = 0, height = 0, bit_depth = 0;  // of an image
         std::optional<ChannelChoice> channel;

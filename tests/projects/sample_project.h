@@ -335,6 +335,9 @@ inline PanelRecord sample_panel_record(unsigned seed) {
             m.second_capture = i == 1 ? 3 : -1;
             list->push_back(m);
         }
+    if (seed % 2 == 0)
+        panel.servo =
+            PanelServo{ServoingStatus::settled, {{make.pose(), 0.25}, {make.pose(), 1.0 / 3.0}}, make.pose()};
     panel.fit.emplace();
     panel.fit->status = CorrectionStatus::over_limit;
     panel.fit->gripper_motion = make.pose();

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "app/cli/answers/result_json.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/panel/panel_measure.h"
 
 namespace seamwright::cli {
 
@@ -39,18 +42,46 @@ json places_json(const std::vector<PanelMeasurement>& places) {
     return list;
 }
 
+json number_json(double v) {
+    return std::isfinite(v) ? json(v) : json();
+}
+
+// The moves, and the single step from the same measurement beside them.
+json servo_json(const PanelRecord& p) {
+    json moves = json::array();
+    for (const PanelServoMove& m : p.servo->moves)
+        moves.push_back({{"motion", pose_json(m.motion)}, {"rms_mm", m.rms_mm}});
+    const ServoComparison c = compare_servo(p);
+    json out = {{"status", to_string(p.servo->status)},
+                {"moves", moves},
+                {"moves_made", c.moves},
+                {"before_rms_mm", number_json(c.before_rms_mm)},
+                {"after_rms_mm", number_json(c.after_rms_mm)},
+                {"motion", pose_json(p.servo->motion)},
+                {"single_step", json()}};
+    if (p.fit)
+        out["single_step"] = {{"motion", pose_json(p.fit->gripper_motion)},
+                              {"moves_made", 1},
+                              {"foreseen_rms_mm", number_json(c.single_rms_mm)},
+                              {"apart_mm", c.apart_mm},
+                              {"apart_deg", c.apart_deg}};
+    return out;
+}
+
 json panel_json(const PanelRecord& p) {
-    return {{"job", p.job_id},
-            {"verdict", to_string(p.verdict)},
-            {"before", places_json(p.before)},
-            {"after", places_json(p.after)},
-            {"fit", p.fit ? panel_fit_json(*p.fit) : json()},
-            {"base_from_gripper", pose_json(p.base_from_gripper)},
-            {"base_from_moved_gripper", pose_json(p.base_from_moved_gripper)},
-            {"base_from_frame", pose_json(p.base_from_frame)},
-            {"gate_passed", p.gate_passed},
-            {"refusals", p.refusals},
-            {"push", push_json(p.push)}};
+    json out = {{"job", p.job_id},
+                {"verdict", to_string(p.verdict)},
+                {"before", places_json(p.before)},
+                {"after", places_json(p.after)},
+                {"fit", p.fit ? panel_fit_json(*p.fit) : json()},
+                {"base_from_gripper", pose_json(p.base_from_gripper)},
+                {"base_from_moved_gripper", pose_json(p.base_from_moved_gripper)},
+                {"base_from_frame", pose_json(p.base_from_frame)},
+                {"gate_passed", p.gate_passed},
+                {"refusals", p.refusals},
+                {"push", push_json(p.push)}};
+    if (p.servo) out["servo"] = servo_json(p);
+    return out;
 }
 
 std::string panel_text(const RunRecord& run) {
@@ -63,6 +94,22 @@ std::string panel_text(const RunRecord& run) {
                         ? fmt::format("gap {:8.3f}   flush {:+8.3f} mm\n", m.gap_mm, m.flush_mm)
                         : fmt::format("{}: {}\n", to_string(m.status), m.message);
         }
+    if (p.servo) {
+        for (std::size_t i = 0; i < p.servo->moves.size(); ++i)
+            text +=
+                fmt::format("  move {:<2} gap and flush {:.4f} mm rms off\n", i, p.servo->moves[i].rms_mm);
+        const ServoComparison c = compare_servo(p);
+        text += fmt::format("servo: {}\n  S    {}\n", to_string(p.servo->status), pose_text(p.servo->motion));
+        if (c.moves > 0)
+            text +=
+                fmt::format("servoing: {} moves, gap and flush from {:.4f} to {:.4f} mm rms as measured\n",
+                            c.moves, c.before_rms_mm, c.after_rms_mm);
+        if (p.fit)
+            text += fmt::format(
+                "the single step beside it: 1 move, to {:.4f} mm rms as foreseen, {:.4f} mm and {:.4f} deg "
+                "apart:\n",
+                c.single_rms_mm, c.apart_mm, c.apart_deg);
+    }
     if (p.fit) text += panel_fit_text(*p.fit);
     for (const Text& reason : p.refusals) text += "  refused: " + reason.english() + "\n";
     if (run.push)

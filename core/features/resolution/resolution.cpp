@@ -15,6 +15,7 @@ constexpr int kFewestPoints = 10;
 constexpr std::size_t kFewestNeighbours = 20;
 constexpr double kMostMissing = 0.3;
 constexpr double kPointsAPiece = 3;
+constexpr double kShortPieces = 0.1;  // share of the contour's length
 constexpr double kHeightInNoise = 6;
 const double kUniform = 1 / std::sqrt(12.0);  // sigma of what lies anywhere within a step of 1
 
@@ -35,17 +36,26 @@ double depth_step(std::vector<double> differences) {
 }
 
 struct Piece {
-    double shortest_mm = 0, height_mm = 0;
+    double length_mm = 0, height_mm = 0;
 };
-// Of the contour that the feature is looked for in: its straight pieces, and how much it stands up.
+// Of the contour that the feature is looked for in: the length that its straight pieces have over nine tenths of it (at a
+// kink, a jump or a point of noise two neighbours are a piece), and how much it stands up.
 Piece pieces_of(const std::vector<double>& x, const std::vector<double>& z, double noise_mm) {
     std::vector<int> kept;
     reduce_contour(x, z, std::max(4 * noise_mm, 0.02), kept);
     Piece piece;
-    piece.shortest_mm = std::numeric_limits<double>::infinity();
+    std::vector<double> lengths;
+    double whole = 0, below = 0;
     for (std::size_t i = 1; i < kept.size(); ++i) {
         const auto a = static_cast<std::size_t>(kept[i - 1]), b = static_cast<std::size_t>(kept[i]);
-        piece.shortest_mm = std::min(piece.shortest_mm, std::hypot(x[b] - x[a], z[b] - z[a]));
+        lengths.push_back(std::hypot(x[b] - x[a], z[b] - z[a]));
+        whole += lengths.back();
+    }
+    std::sort(lengths.begin(), lengths.end());
+    for (const double length : lengths) {
+        piece.length_mm = length;
+        below += length;
+        if (below > kShortPieces * whole) break;
     }
     const auto [low, high] = std::minmax_element(z.begin(), z.end());
     piece.height_mm = *high - *low;
@@ -69,7 +79,7 @@ Text what_of(const ResolutionItem& item) {
         return Text("its depth comes in steps of {:.4f} mm, {:.4f} mm are needed", item.has, item.needs);
     if (item.name == "points")
         return Text("the feature rests on {:.0f} points, {:.0f} are needed", item.has, item.needs);
-    if (item.name == "noise")
+    if (item.name == "height")
         return Text("the contour is {:.3f} mm high, {:.3f} mm stand out of the noise", item.has, item.needs);
     if (item.name == "missing")
         return Text("{:.0f} % of the lines have no point, {:.0f} % may be missing", 100 * item.has,
@@ -86,11 +96,14 @@ std::string_view name_of(ResolutionVerdict verdict) {
 
 Expected<SensorNumbers> sensor_numbers(const Profile& profile) {
     std::vector<double> spacing, bend, step;
-    std::size_t returns = 0;
+    std::size_t returns = 0, first = 0, last = 0;
     const std::size_t n = profile.size();
     const auto seen = [&](std::size_t i) { return profile.segment[i] != kOutlier; };
     for (std::size_t i = 0; i < n; ++i) {
-        returns += std::isfinite(profile.z_mm[i]);
+        if (std::isfinite(profile.z_mm[i])) {
+            if (returns++ == 0) first = i;
+            last = i;
+        }
         if (!seen(i) || i == 0 || !seen(i - 1) || profile.segment[i] != profile.segment[i - 1]) continue;
         const double dx = profile.x_mm[i] - profile.x_mm[i - 1], dz = profile.z_mm[i] - profile.z_mm[i - 1];
         spacing.push_back(std::hypot(dx, dz));
@@ -105,7 +118,8 @@ Expected<SensorNumbers> sensor_numbers(const Profile& profile) {
     numbers.pitch_mm = median(spacing);
     numbers.noise_mm = median(bend) / 0.6745 / std::sqrt(6.0);
     numbers.depth_step_mm = depth_step(std::move(step));
-    numbers.missing_share = 1 - static_cast<double>(returns) / static_cast<double>(n);
+    // Beside the part there is nothing to return.
+    numbers.missing_share = 1 - static_cast<double>(returns) / static_cast<double>(last - first + 1);
     return numbers;
 }
 
@@ -161,13 +175,13 @@ Expected<ResolutionCheck> check_resolution(const Profile& profile, const Feature
     check.sigma_mm = std::sqrt(std::pow(worst(check.feature.covariance_mm2), 2) + pitch_share * pitch_share +
                                std::pow(s.depth_step_mm * kUniform, 2));
     const double pitch_needed = end      ? sigma_mm / kUniform
-                                : taught ? piece.shortest_mm / kPointsAPiece
+                                : taught ? piece.length_mm / kPointsAPiece
                                          : std::numeric_limits<double>::infinity();
     if (std::isfinite(pitch_needed)) check.items.push_back({"pitch", s.pitch_mm, pitch_needed, false, "mm"});
     check.items.push_back(
         {"points", static_cast<double>(check.feature.points_used), kFewestPoints, true, ""});
     check.items.push_back({"depth_step", s.depth_step_mm, 0.5 * sigma_mm / kUniform, false, "mm"});
-    if (shape) check.items.push_back({"noise", piece.height_mm, kHeightInNoise * s.noise_mm, true, "mm"});
+    if (shape) check.items.push_back({"height", piece.height_mm, kHeightInNoise * s.noise_mm, true, "mm"});
     check.items.push_back({"missing", s.missing_share, kMostMissing, false, ""});
     check.items.push_back({"sigma", check.sigma_mm, sigma_mm, false, "mm"});
 

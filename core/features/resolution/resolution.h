@@ -7,10 +7,10 @@
 //
 // What it needs follows from the recipe found in that very profile, and from the sigma that its reference point may have:
 //     pitch     an end of a contour lies anywhere within a pitch: pitch / sqrt(12) <= sigma. A template's straight pieces
-//               must hold three points: pitch <= shortest piece / 3.
+//               must hold three points: pitch <= L / 3, where nine tenths of its length lie on pieces of L or more.
 //     points    that the feature rests on: kFewestPoints
 //     depth     step / sqrt(12) <= sigma / 2
-//     noise     a template or corner stands out of it: height of the contour >= 6 noise
+//     height    a template or corner stands out of it: height of the contour >= 6 noise
 //     sigma     of the point as the finder states it, the shares of pitch and step with it, <= sigma
 // Pitch and noise of a triangulating sensor grow with the distance and with its square: the cure is to come nearer, or a
 // sensor of a narrower field.
@@ -29,7 +29,7 @@ struct SensorNumbers {
     double pitch_mm = 0;       // median distance of neighbours along the contour
     double depth_step_mm = 0;  // 0: no step is seen
     double noise_mm = 0;       // of a point, one axis
-    double missing_share = 0;  // of the lines
+    double missing_share = 0;  // of the lines between the first and the last that returned
 };
 // Of a filtered profile. Error (input): fewer than 20 points of one contour.
 Expected<SensorNumbers> sensor_numbers(const Profile& profile);
@@ -42,7 +42,7 @@ enum class ResolutionVerdict { resolves, marginal, does_not_resolve, not_found }
 std::string_view name_of(ResolutionVerdict verdict);
 
 struct ResolutionItem {
-    std::string name;  // "pitch", "points", "depth_step", "noise", "sigma", "missing"
+    std::string name;  // "pitch", "points", "depth_step", "height", "sigma", "missing"
     double has = 0, needs = 0;
     bool at_least = false;  // has >= needs is good; else has <= needs
     std::string unit;

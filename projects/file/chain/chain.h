@@ -7,7 +7,7 @@
 //   utc       ISO 8601
 //   person    who was signed in; empty: nobody
 //   kind      begin, project, user, run, captures, event, events, setup, evidence, drift point, scan,
-//             sign in, sign out, wrong password
+//             guide, sign in, sign out, wrong password
 //   subject   what it is about: "regions R1", "5" of a run, a user's name
 //   digest    of what it commits to; empty: that is gone
 //   note      for people: what of a limit changed, a user's role

@@ -124,6 +124,47 @@ TEST(Resolution, StepsNoiseAndGapsAreNamed) {
     }
 }
 
+// The sheet with a hem, half a millimetre high, and free air beside its end.
+Profile hemmed_sheet(double pitch, double noise, unsigned seed) {
+    Profile p = bent_sheet(pitch, noise, 0, seed);
+    for (std::size_t i = 0; i < p.size(); ++i)
+        if (p.x_mm[i] < -12) p.z_mm[i] += 0.5;
+    for (int i = 0; i < static_cast<int>(30 / pitch); ++i) {
+        p.x_mm.push_back(20 + pitch * i);
+        p.z_mm.push_back(std::nan(""));
+    }
+    p.segment.clear();
+    EXPECT_TRUE(filter_profile(p, {}));
+    return p;
+}
+
+// At a kink or a jump two neighbours are a piece of the contour, which says nothing about the template; air beside the part
+// does not return.
+TEST(Resolution, ATemplateWithAKinkAndAirBesideThePartIsResolvedByAFinePitchAlone) {
+    for (const double pitch : {0.08, 4.0}) {
+        FeatureRecipe r = recipe("template");
+        const Profile taught = hemmed_sheet(pitch, 0.01, 1);
+        for (std::size_t i = 0; i < taught.size(); ++i)
+            if (taught.segment[i] != kOutlier && std::isfinite(taught.z_mm[i])) {
+                r.template_profile.x_mm.push_back(taught.x_mm[i]);
+                r.template_profile.z_mm.push_back(taught.z_mm[i]);
+                r.template_profile.segment.push_back(taught.segment[i]);
+            }
+        const Profile seen = hemmed_sheet(pitch, 0.01, 2);
+        const auto check = check_resolution(
+            seen, r, 0.05,
+            SensorNumbers{pitch, 0, 0.01,
+                          sensor_numbers(taught) ? sensor_numbers(taught)->missing_share : 0});
+        ASSERT_TRUE(check) << check.error().sentence();
+        if (pitch < 1) {
+            EXPECT_EQ(check->verdict, ResolutionVerdict::resolves) << check->reason.english();
+            EXPECT_LT(check->sensor.missing_share, 0.01);
+        } else {
+            EXPECT_NE(check->verdict, ResolutionVerdict::resolves);
+        }
+    }
+}
+
 TEST(Resolution, WhatIsNotThereIsNotFound) {
     Profile flat;
     for (int i = 0; i < 300; ++i) {

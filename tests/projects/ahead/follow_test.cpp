@@ -10,7 +10,6 @@
 #include <algorithm>
 
 #include "cut_sensor.h"
-#include "devices/exchange/files.h"
 #include "lossy_wire.h"
 #include "projects/ahead/simulated_seam.h"
 
@@ -274,7 +273,9 @@ TEST(Follow, RefusesBeforeAnythingMoves) {
     };
     EXPECT_THAT(refusal([](FollowOptions& o) { o.region_id = "other"; }), HasSubstr("no region \"other\""));
     EXPECT_THAT(refusal([](FollowOptions& o) { o.spot_id = "S99"; }), HasSubstr("no spot \"S99\""));
-    EXPECT_THAT(refusal([](FollowOptions& o) { o.guide.clear(); }), HasSubstr("a guide needs two points"));
+    EXPECT_THAT(
+        refusal([](FollowOptions& o) { o.guide_csv = "x_mm,y_mm,z_mm,a_deg,b_deg,c_deg\n1,2,3,0,0,0\n"; }),
+        HasSubstr("a guide needs two points"));
     EXPECT_THAT(refusal([](FollowOptions& o) { o.limit_mm = 0; }), HasSubstr("is none"));
     EXPECT_THAT(refusal([](FollowOptions& o) { o.limit_mm = 26; }), HasSubstr("is none"));
     EXPECT_THAT(refusal([](FollowOptions& o) { o.latency_ms = 1e9; }), HasSubstr("not plausible"));
@@ -310,23 +311,55 @@ TEST(Follow, ThePartThatTheGateRefusesIsNotSteered) {
     EXPECT_EQ(seam->faults->ahead, 0);
 }
 
-TEST(Follow, AGuideGoesThroughItsTable) {
+// A file of that name first, then what the project keeps: by name, the newest, and by hash.
+TEST(Follow, TheGuideOfARunIsKeptInTheProjectAndFoundThere) {
     const auto seam = seam_of({});
     ASSERT_TRUE(seam);
-    const auto file = file_named("guide.csv");
-    ASSERT_TRUE(write_text_file(file, guide_csv(seam->follow.guide)));
-    const auto read = read_guide(file);
+    seam->follow.guide_name = "top.csv";
+    const auto followed = follow_run(seam->cell->station(), {}, seam->follow);
+    ASSERT_TRUE(followed) << followed.error().sentence();
+    ASSERT_EQ(followed->run.status, RunStatus::ok) << followed->run.message.english();
+    ASSERT_EQ(followed->guide_hash.size(), 64u);
+    const ProjectFile& file = seam->cell->station().file();
+    const auto stored = file.load_run(followed->run.number, false);
+    ASSERT_TRUE(stored);
+    EXPECT_TRUE(has_event(*stored, EventKind::note, followed->guide_hash)) << "the run names it";
+    const auto kept = file.load_guide(followed->guide_hash);
+    ASSERT_TRUE(kept) << kept.error().sentence();
+    EXPECT_EQ(kept->csv, seam->follow.guide_csv) << "to the byte";
+    EXPECT_TRUE(file.check().empty()) << "the chain knows it";
+
+    // The same again is not kept twice; another of that name is the newer one.
+    ProjectFile& writing = seam->cell->station().file();
+    ASSERT_TRUE(writing.keep_guide("top.csv", seam->follow.guide_csv));
+    EXPECT_EQ(file.guides()->size(), 1u);
+    std::string longer = seam->follow.guide_csv;
+    longer.append("0,0,100,0,0,0\n");
+    ASSERT_TRUE(writing.keep_guide("top.csv", longer));
+    EXPECT_EQ(find_guide(file, "top.csv")->csv, longer);
+    EXPECT_EQ(find_guide(file, followed->guide_hash.substr(0, 8))->csv, seam->follow.guide_csv);
+    EXPECT_FALSE(find_guide(file, followed->guide_hash.substr(0, 7))) << "too short to mean one";
+    EXPECT_FALSE(find_guide(file, "other.csv"));
+    EXPECT_FALSE(writing.keep_guide("empty", ""));
+}
+
+TEST(Follow, AGuideGoesThroughItsTable) {
+    std::vector<GuidePoint> points;
+    for (int i = 0; i < 60; ++i) {
+        const double a = 0.02 * i;
+        points.push_back({{150 * std::cos(a) + 1.0 / 3, 150 * std::sin(a), 7 * a}, {std::sin(a), 0.1, 1}});
+    }
+    const auto read = parse_guide(guide_csv(points), "guide");
     ASSERT_TRUE(read) << read.error().sentence();
-    ASSERT_EQ(read->size(), seam->follow.guide.size());
-    const auto curve = GuideCurve::make(*read), before = GuideCurve::make(seam->follow.guide);
+    ASSERT_EQ(read->size(), points.size());
+    const auto curve = GuideCurve::make(*read), before = GuideCurve::make(points);
     ASSERT_TRUE(curve && before);
     for (double s = 0; s < curve->length_mm(); s += 3) {
         EXPECT_LT((curve->at(s) - before->at(s)).norm(), 1e-9);
         EXPECT_LT((curve->directions(s) - before->directions(s)).norm(), 1e-4);
     }
-    ASSERT_TRUE(write_text_file(file, "x_mm,y_mm,z_mm,a_deg,b_deg,c_deg\n1,2,3,0,0,0\n"));
-    EXPECT_FALSE(read_guide(file)) << "one point is no guide";
-    std::filesystem::remove(file);
+    EXPECT_FALSE(parse_guide("x_mm,y_mm,z_mm,a_deg,b_deg,c_deg\n1,2,3,0,0,0\n", "guide"))
+        << "one point is no guide";
 }
 
 }  // namespace

@@ -47,7 +47,10 @@ MEMBERS(ActingOffset, a, b)
 MEMBERS(PanelMeasurement, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p)
 MEMBERS(PanelFit, a, b, c, d, e, f, g, h, i, j, k, l, m)
 MEMBERS(PanelSpotResult, a, b, c, d, e, f, g)
-MEMBERS(PanelRecord, a, b, c, d, e, f, g, h, i, j, k)
+MEMBERS(PanelRecord, a, b, c, d, e, f, g, h, i, j, k, l)
+MEMBERS(PanelServo, a, b, c)
+MEMBERS(PanelServoMove, a, b)
+MEMBERS(PanelSensitivity, a, b, c, d, e, f)
 MEMBERS(PartSetup, a, b, c, d, e)
 MEMBERS(PartType, a, b, c)
 MEMBERS(SensorSetup, a, b, c, d, e, f, g)
@@ -62,7 +65,7 @@ MEMBERS(DrawingOrigin, a, b, c, d, e, f)
 MEMBERS(Region, a, b, c, d, e, f, g, h, i, j, k)
 MEMBERS(KeptOffset, a, b, c, d, e)
 MEMBERS(PanelPlace, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
-MEMBERS(PanelJob, a, b, c, d, e, f, g, h, i, j, k, l, m)
+MEMBERS(PanelJob, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
 MEMBERS(Requirements, a, b, c, d, e, f)
 MEMBERS(AcceptanceRequirements, a, b, c, d, e, f, g, h, i, j, k)
 MEMBERS(FrozenContour, a, b, c, d, e, f, g, h, i)
@@ -109,7 +112,10 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     panel.before.resize(1);
     panel.fit.emplace();
     panel.fit->spots.resize(1);
+    panel.servo.emplace().moves.resize(1);
     const auto p = to_json_document(panel);
+    whole(*panel.servo, p["servo"]);
+    whole(panel.servo->moves[0], p["servo"]["moves"][0]);
     whole(panel, p);
     whole(panel.before[0], p["before"][0]);
     whole(*panel.fit, p["fit"]);
@@ -178,9 +184,11 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     whole(drift.set_aside[0], w["set_aside"][0]);
     whole(DriftPoint{}, to_json_document(DriftPoint{}));
     PanelJob job;
+    job.sensitivity.emplace();
     job.places.resize(1);
     const auto j = to_json_document(job);
     whole(job, j);
+    whole(*job.sensitivity, j["sensitivity"]);
     whole(job.places[0], j["places"][0]);
     Requirements required;
     required.acceptance.tolerance_mm = 1;

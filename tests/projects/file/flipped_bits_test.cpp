@@ -39,6 +39,7 @@ void make_full_file(const fs::path& path) {
     ASSERT_TRUE(file->append_event({0, "2024-05-01T12:00:02.000Z", 0, EventKind::note, "desk", "a word"}));
     ASSERT_TRUE(file->add_user("ada", Role::administrator, "correct horse battery"));
     ASSERT_TRUE(file->sign_in("ada", "correct horse battery"));
+    ASSERT_TRUE(file->keep_guide("top.csv", "x_mm,y_mm,z_mm,a_deg,b_deg,c_deg\n1,2,3,0,0,0\n"));
     for (const char* name : {"first", "second"})
         ASSERT_TRUE(file->append_scan({name, "2024-05-01T12:00:03.000Z", "A", "R1", "spots S1, S2", 12, 3400,
                                        std::vector<std::byte>(300, std::byte{0x5a})}));
@@ -102,6 +103,9 @@ std::optional<std::string> all_of(const fs::path& path) {
             << ' ' << scan->points;
         for (const std::byte b : scan->cloud_ply) all << static_cast<char>(b);
     }
+    const auto guides = file->guides();
+    if (!guides) return std::nullopt;
+    for (const StoredGuide& g : *guides) all << g.name << g.csv << g.utc << g.hash;
     if (!file->check().empty()) return std::nullopt;
     return all.str();
 }

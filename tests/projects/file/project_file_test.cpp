@@ -463,7 +463,8 @@ TEST(ProjectFile, IdsHaveALength) {
     {
         auto db = Database::open((folder / "a.seam").string(), SQLITE_OPEN_READWRITE).value();
         ASSERT_TRUE(
-            db.execute("DROP TABLE users; DROP TABLE chain; DROP TABLE fixture; DROP TABLE outbox; PRAGMA "
+            db.execute("DROP TABLE users; DROP TABLE chain; DROP TABLE fixture; DROP TABLE outbox; DROP "
+                       "TABLE guides; PRAGMA "
                        "user_version = 11"));
     }
     auto old = ProjectFile::open(folder / "a.seam");
@@ -699,6 +700,31 @@ TEST(Migration, VersionFiveBecomesCurrentAndTakesAcceptance) {
     EXPECT_EQ(again.requirements.acceptance, project.requirements.acceptance);
     EXPECT_EQ(again.requirements.sigma3_mm, 0.2);
     EXPECT_TRUE(opened->check().empty());
+}
+
+// A file of before has no guide, takes one, and its chain and checks know it.
+TEST(Migration, OlderVersionsTakeAGuide) {
+    for (int version = 1; version <= 13; ++version) {
+        TemporaryFolder folder;
+        const fs::path path = folder / "old.seam";
+        make_old_version(path, version);
+        auto file = ProjectFile::open(path);
+        ASSERT_TRUE(file) << version << file.error().sentence();
+        EXPECT_TRUE(file->guides()->empty());
+        EXPECT_FALSE(file->load_guide("top.csv"));
+        const std::string csv = "x_mm,y_mm,z_mm,a_deg,b_deg,c_deg\r\n0,0,0,0,0,0\r\n0,9,0,0,0,0\r\n";
+        const auto kept = file->keep_guide("top.csv", csv);
+        ASSERT_TRUE(kept) << kept.error().sentence();
+        // sha256sum of these bytes.
+        EXPECT_EQ(kept->hash, "5eb4fbf1c93a9fb1644d5a87bb8b35c919843732dbb552577a3a44a72c275b45");
+        EXPECT_EQ(file->keep_guide("other name", csv)->utc, kept->utc) << "kept once";
+        const auto again = ProjectFile::open(path);
+        ASSERT_TRUE(again);
+        ASSERT_EQ(again->guides()->size(), 1u);
+        EXPECT_EQ(again->load_guide(kept->hash)->csv, csv);
+        EXPECT_EQ(again->load_guide("top.csv")->hash, kept->hash);
+        EXPECT_TRUE(again->check().empty());
+    }
 }
 
 // What was taught before there were drawings was taught on the part; a spot from the drawing is kept as such.

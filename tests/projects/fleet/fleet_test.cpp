@@ -272,7 +272,7 @@ TEST_F(Fleet, AFileOfBeforeQueuesAllItsRuns) {
     { const ProjectFile closed = std::move(made); }
     {
         auto db = Database::open((folder_ / "a.seam").string(), SQLITE_OPEN_READWRITE).value();
-        ASSERT_TRUE(db.execute("DROP TABLE outbox; PRAGMA user_version = 12"));
+        ASSERT_TRUE(db.execute("DROP TABLE outbox; DROP TABLE guides; PRAGMA user_version = 12"));
     }
     auto file = ProjectFile::open(folder_ / "a.seam");
     ASSERT_TRUE(file) << sentence(file);

@@ -22,6 +22,7 @@
 #include "devices/simulated/scene/random.h"
 #include "projects/measure/fields.h"
 #include "projects/measure/measure.h"
+#include "projects/panel/panel_servo.h"
 #include "projects/panel/panel_station.h"
 #include "projects/reuse/simulated_truth.h"
 #include "projects/station/check.h"
@@ -130,7 +131,8 @@ Expected<Answer> panel(const std::string& file, const std::string& deviation) {
 
 struct PanelArguments {
     std::string file, job, part, deviation;
-    bool push = false, dry_run = false, keep_images = false, simulated = false;
+    bool push = false, dry_run = false, keep_images = false, simulated = false, servo = false, learn = false;
+    ServoingOptions servoing = device_servoing();
     int hold_s = static_cast<int>(kHold.count() / 1000);
     int teach = 0;
     std::uint64_t seed = 1;
@@ -247,9 +249,59 @@ Expected<void> make_simulated(const PanelArguments& a) {
     return station.edit(displaced);
 }
 
+// The sensitivity by known small moves, kept with the job.
+Expected<Answer> learn(Station& station, const std::string& id, const PanelArguments& a) {
+    SEAM_TRY(const auto learnt, learn_panel(station, id, a.servoing, run_options(a)));
+    Answer answer;
+    answer.json = {{"status", learnt.usable ? "learnt" : "ill_conditioned"},
+                   {"job", id},
+                   {"condition", std::isfinite(learnt.condition) ? json(learnt.condition) : json()},
+                   {"condition_limit", a.servoing.condition_limit},
+                   {"run", learnt.run.number}};
+    if (!learnt.usable) {
+        answer.text = fmt::format(
+            "the sensitivity cannot be inverted (condition {:.3g}): measure at more places, in other "
+            "directions\n",
+            learnt.condition);
+        answer.exit_code = kExitVerdict;
+        return answer;
+    }
+    Project project = station.project();
+    for (PanelJob& job : project.panel_jobs)
+        if (job.id == id) job = learnt.job;
+    SEAM_OK(station.edit(project));
+    const PanelSensitivity& s = *learnt.job.sensitivity;
+    answer.json["places"] = s.places;
+    answer.json["sensitivity"] = s.rows;
+    answer.text = fmt::format(
+        "sensitivity of {} values learnt by moves of {:g} mm and {:g} deg, condition {:.1f}; kept\n",
+        s.rows.size(), s.step_mm, s.step_deg, s.condition);
+    return answer;
+}
+
+Expected<Answer> servo_on_devices(Station& station, const std::string& id, const PanelArguments& a) {
+    if (a.learn) {
+        SEAM_TRY(auto learnt, learn(station, id, a));
+        if (learnt.exit_code != kExitOk || !a.push) return learnt;
+    }
+    SEAM_TRY(auto record, servo_panel(station, id, a.servoing, run_options(a)));
+    Answer answer;
+    answer.json = run_json(record);
+    answer.text = run_text(record);
+    answer.exit_code = run_exit_code(record);
+    return answer;
+}
+
 Expected<Answer> panel_on_devices(const PanelArguments& a) {
+    if (a.learn && !a.servo)
+        return usage_error("there is nothing to learn for", "--learn", "give --servo with it");
+    if (a.servo && a.teach > 0 && !a.simulated)
+        return usage_error("teaching and servoing are two things", "--servo", "teach first");
     if (a.simulated) SEAM_OK(make_simulated(a));
-    SEAM_TRY(auto station, open_station(a.file, a.push ? std::optional(Deed::push) : std::nullopt));
+    const std::optional<Deed> deed = a.learn  ? std::optional(Deed::teach)
+                                     : a.push ? std::optional(Deed::push)
+                                              : std::nullopt;
+    SEAM_TRY(auto station, open_station(a.file, deed));
     SEAM_TRY(auto id, job_of(station.project(), a));
     if (!a.settings.empty()) return set(station, id, a);
     if (const PanelJob* job = find_panel_job(station.project(), id); job && a.teach == 0)
@@ -271,6 +323,7 @@ Expected<Answer> panel_on_devices(const PanelArguments& a) {
         answer.json = {{"status", "taught"}, {"job", id}, {"places", places}};
         return answer;
     }
+    if (a.servo) return servo_on_devices(station, id, a);
     SEAM_TRY(auto record, run_panel(station, id, run_options(a)));
     answer.json = run_json(record);
     answer.text = run_text(record);
@@ -306,6 +359,9 @@ void add_panel(CommandLine& line) {
         "seamwright panel job.json --json -\n"
         "  seamwright panel fender.seam --part CAR-0815 --push\n"
         "  seamwright panel try.seam --simulated --push\n"
+        "  seamwright panel try.seam --simulated --servo --learn --push\n"
+        "  seamwright panel fender.seam --servo --learn; seamwright panel fender.seam --servo --part "
+        "CAR-0815 --push\n"
         "  seamwright panel fender.seam --set gap_tolerance_mm 0.3 --set flush_tolerance_mm 0.2\n"
         "  seamwright panel fender.seam --set deviation leave_out\n"
         "  job.json: "
@@ -323,6 +379,29 @@ void add_panel(CommandLine& line) {
     auto* push = command->add_flag(
         "--push", a->push,
         "Write the frame that moves the panel, if the safety gate passes it, and measure again");
+    auto* servo =
+        command->add_flag("--servo", a->servo,
+                          "In several moves by the learnt sensitivity, each through the gate; the answer has "
+                          "the single step beside it");
+    auto* learn = command->add_flag(
+        "--learn", a->learn,
+        "Learn the sensitivity by twelve small moves through the gate, and keep it with the "
+        "job");
+    learn->needs(servo);
+    command->add_option("--step-mm", a->servoing.step_mm, "Of the moves that learn")
+        ->needs(learn)
+        ->capture_default_str();
+    command->add_option("--step-deg", a->servoing.step_deg, "Of the turns that learn")
+        ->needs(learn)
+        ->capture_default_str();
+    command->add_option("--moves", a->servoing.max_moves, "Most moves of a panel")
+        ->needs(servo)
+        ->check(CLI::Range(1, 50))
+        ->capture_default_str();
+    command->add_option("--gain", a->servoing.gain, "Share of the computed motion that a move makes")
+        ->needs(servo)
+        ->check(CLI::Range(0.1, 1.0))
+        ->capture_default_str();
     command->add_flag("--dry-run", a->dry_run, "Everything but writing (the default)")->excludes(push);
     command
         ->add_option(

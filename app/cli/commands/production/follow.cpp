@@ -21,7 +21,7 @@ using nlohmann::json;
 
 struct FollowArguments {
     std::string file, guide, part, type;
-    bool teach = false;
+    bool teach = false, list = false;
     int hold_s = 60;
     FollowOptions follow;
     DrivenGapPass driven;
@@ -38,6 +38,7 @@ void tell_run(const RunProgress& p) {
 json figures_json(const FollowedRun& f) {
     const SteeringFigures& s = f.figures;
     return {{"guide_mm", f.guide_mm},
+            {"guide_hash", f.guide_hash},
             {"latency_ms", f.latency_ms},
             {"kept", s.stored},
             {"implausible", s.implausible},
@@ -95,20 +96,28 @@ Expected<Answer> teach(FollowArguments& a) {
              a.driven.spot_ids.empty() ? followed_pass(station, followed) : gap_pass(station, a.driven));
     SEAM_TRY(const auto guide, taught_guide(project, a.follow.spot_id, pass));
     SEAM_TRY(const auto curve, GuideCurve::make(guide));
-    SEAM_OK(write_text_file(a.guide, guide_csv(guide)));
+    const std::string csv = guide_csv(guide);
+    SEAM_OK(write_text_file(a.guide, csv));
+    SEAM_TRY(const auto kept,
+             station.file().keep_guide(std::filesystem::path(a.guide).filename().string(), csv));
     Answer answer;
-    answer.json = {{"status", "ok"},          {"guide", a.guide},
-                   {"points", guide.size()},  {"length_mm", curve.length_mm()},
-                   {"profiles", pass.frames}, {"travel_sigma_mm", pass.travel_sigma_mm}};
+    answer.json = {{"status", "ok"},
+                   {"guide", a.guide},
+                   {"guide_hash", kept.hash},
+                   {"points", guide.size()},
+                   {"length_mm", curve.length_mm()},
+                   {"profiles", pass.frames},
+                   {"travel_sigma_mm", pass.travel_sigma_mm}};
     answer.text = fmt::format("the contour over {:.1f} mm, {} points from {} profiles: {}\n",
                               curve.length_mm(), guide.size(), pass.frames, a.guide);
     return answer;
 }
 
 Expected<Answer> follow(FollowArguments& a) {
-    SEAM_TRY(a.follow.guide, read_guide(a.guide));
-    a.follow.guide_source = Text(a.guide);
     SEAM_TRY(auto station, open_station(a.file, Deed::push));
+    SEAM_TRY(auto guide, find_guide(station.file(), a.guide));
+    a.follow.guide_csv = std::move(guide.csv);
+    a.follow.guide_name = std::move(guide.name);
     SEAM_TRY(const auto type, called_type(station.project(), a.type));
     if (auto refused = refuse_unsafe(station, motion_findings(of_type(station.project(), type), true)))
         return *refused;
@@ -123,6 +132,28 @@ Expected<Answer> follow(FollowArguments& a) {
                              }}));
     SEAM_TRY(const auto followed, follow_run(station, options, a.follow));
     return answer_of(followed);
+}
+
+// Those that the project keeps, with their tables.
+Expected<Answer> list_guides(const FollowArguments& a) {
+    SEAM_TRY(const auto file, ProjectFile::open(a.file, FileAccess::read_only));
+    SEAM_TRY(const auto guides, file.guides());
+    Answer answer;
+    answer.json = {{"status", "ok"}, {"guides", json::array()}};
+    for (const StoredGuide& g : guides) {
+        SEAM_TRY(const auto points, parse_guide(g.csv, g.name));
+        SEAM_TRY(const auto curve, GuideCurve::make(points));
+        answer.json["guides"].push_back({{"name", g.name},
+                                         {"utc", g.utc},
+                                         {"hash", g.hash},
+                                         {"points", points.size()},
+                                         {"length_mm", curve.length_mm()},
+                                         {"csv", g.csv}});
+        answer.text += fmt::format("{:<24}{}  {:>6} points {:9.1f} mm  {}\n", g.name, g.utc, points.size(),
+                                   curve.length_mm(), g.hash.substr(0, 16));
+    }
+    if (guides.empty()) answer.text = "no guide is kept\n";
+    return answer;
 }
 
 json way_json(const SeamWay& w) {
@@ -180,6 +211,7 @@ Expected<Answer> simulate(FollowArguments& a) {
 }
 
 Expected<Answer> start(FollowArguments& a) {
+    if (a.list) return list_guides(a);
     if (!a.simulate.empty()) return simulate(a);
     if (a.guide.empty())
         return usage_error("there is no guide", a.file,
@@ -210,9 +242,17 @@ void add_follow(CommandLine& line) {
     command->add_option("file", a->file, "The project; with --simulate it is made")
         ->required()
         ->type_name("FILE.seam");
-    command->add_option("--guide", a->guide, "The contour as taught: poses in the work object, Z up")
+    command
+        ->add_option(
+            "--guide", a->guide,
+            "The contour as taught: poses in the work object, Z up; or one that the project keeps, by name "
+            "or hash")
         ->type_name("GUIDE.csv");
     auto* teach = command->add_flag("--teach", a->teach, "Make the guide from a pass over the taught part");
+    command
+        ->add_flag("--guides", a->list,
+                   "List the guides that the project keeps of its runs; with --json with their tables")
+        ->excludes(teach);
     command->add_option("--spots", a->driven.spot_ids, "Spots that the robot goes along to teach, in order")
         ->delimiter(',')
         ->type_name("S1,S2,...")

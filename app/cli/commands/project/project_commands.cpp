@@ -295,7 +295,10 @@ void add_project_commands(CommandLine& line) {
         command->add_flag(
             "--with-taught", a->taught_profiles,
             "In the JSON, the spots' reference profiles and templates too: import gives a project that runs");
-        command->add_option("--profiles", a->profiles, "Folder for the run's profiles, one file a spot")
+        command
+            ->add_option("--profiles", a->profiles,
+                         "Folder for the run's profiles, one file a spot; of a panel's run one a sensor, "
+                         "before and after the motion")
             ->type_name("DIR");
         command->add_option("--format", a->format, "csv: sensor frame; ply, pcd: points in base")
             ->check(CLI::IsMember({"csv", "ply", "pcd"}))

@@ -9,7 +9,7 @@
 namespace seamwright {
 namespace {
 
-constexpr std::array<ChecksummedTable, 26> kTables{{
+constexpr std::array<ChecksummedTable, 27> kTables{{
     {"project", "name", "id, name, created_utc"},
     {"requirements", "id", "id, body"},
     {"part", "id", "id, body, mesh"},
@@ -35,6 +35,7 @@ constexpr std::array<ChecksummedTable, 26> kTables{{
     {"run_panels", "run", "run, job_id, gate_passed, body"},
     {"events", "id", "id, utc, run, kind, subject, text"},
     {"evidence", "id", "id, utc, kind, subject, setup, body"},
+    {"fleet", "id", "id, position, body", 14},
     {"outbox", "run", "run, revision, message", 13},
 }};
 

@@ -315,7 +315,17 @@ INSERT INTO outbox SELECT number, ifnull((SELECT max(chain.number) FROM chain WH
 UPDATE outbox SET checksum = row_checksum(run, revision, message);
 )sql";
 
-constexpr std::array<Migration, 13> kMigrations{{{1, kVersion1},
+// The fleet that the results go to.
+constexpr const char* kVersion14 = R"sql(
+CREATE TABLE fleet (
+    id TEXT PRIMARY KEY NOT NULL,
+    position INTEGER NOT NULL,
+    body TEXT NOT NULL,
+    checksum INTEGER NOT NULL
+) STRICT;
+)sql";
+
+constexpr std::array<Migration, 14> kMigrations{{{1, kVersion1},
                                                  {2, kVersion2},
                                                  {3, kVersion3},
                                                  {4, kVersion4},
@@ -327,7 +337,8 @@ constexpr std::array<Migration, 13> kMigrations{{{1, kVersion1},
                                                  {10, kVersion10},
                                                  {11, kVersion11},
                                                  {12, kVersion12},
-                                                 {13, kVersion13}}};
+                                                 {13, kVersion13},
+                                                 {14, kVersion14}}};
 
 // The tables of a fresh file of that version; made once for each version, since making them costs more than
 // checking a file does.

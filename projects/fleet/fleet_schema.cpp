@@ -156,8 +156,9 @@ CREATE TABLE seamwright.hour_sums (
     ranges float8, lowest float8, highest float8,
     first_x float8, first_t float8, last_x float8, last_t float8,
     vals float8[] NOT NULL,
-    PRIMARY KEY (station, hour, panel, region, type, key)
+    PRIMARY KEY (station, panel, region, type, key, hour)
 );
+CREATE INDEX hour_sums_by_hour ON seamwright.hour_sums (station, hour);
 COMMENT ON COLUMN seamwright.hour_sums.vals IS 'the values in ascending order';
 CREATE TABLE seamwright.day_runs (
     station int NOT NULL,

@@ -17,7 +17,7 @@ struct FleetInit {
 };
 int fleet_schema_version();  // that this program knows
 // Makes the schema or brings it up to date, all or nothing; without effect on a current one. Programs that know another version
-// publish nothing from then on. About a minute for a million runs that are there. Error (device): it is newer, no server, no right.
+// publish nothing from then on. Minutes for a million runs that are there. Error (device): it is newer, no server, no right.
 Expected<FleetInit> init_fleet(const FleetTarget& target);
 
 }  // namespace seamwright

@@ -152,7 +152,7 @@ class Reader {
         return {array_of(stations), array_of(from), array_of(until)};
     }
 
-    // A query of the whole days' sums (kOfDays) and of the rows of the rest (kWindows joined by kInWindow).
+    // A query of the whole days' sums (kOfDays) and of the rows of the rest (in_windows).
     pqxx::result ask(const std::string& sql) {
         const Windows rest = windows(spans_.rest_of_days);
         return work_.exec_params(sql, array_of(ids_), spans_.first_day, spans_.end_day, runs_.type_id,
@@ -162,12 +162,16 @@ class Reader {
         "station = ANY ($1::int[]) AND day >= $2::date AND day < $3::date AND isfinite(day) AND ($4::text = "
         "'' OR "
         "type = $4::text)";
-    static constexpr const char* kWindows =
-        "unnest($5::int[], $6::timestamptz[], $7::timestamptz[]) AS w(station, from_at, until_at)";
-    static constexpr const char* kInWindow =
-        "x.station = w.station AND x.started >= w.from_at AND x.started < w.until_at AND ($4::text = '' OR "
-        "x.type = "
-        "$4::text)";
+    // Rows x of a table in the windows; "LATERAL ... OFFSET 0" has each of them looked up in the index.
+    static std::string in_windows(const char* table) {
+        return fmt::format(
+            "unnest($5::int[], $6::timestamptz[], $7::timestamptz[]) AS w(station, from_at, until_at) CROSS "
+            "JOIN "
+            "LATERAL (SELECT * FROM seamwright.{} x WHERE x.station = w.station AND x.started >= w.from_at "
+            "AND "
+            "x.started < w.until_at AND ($4::text = '' OR x.type = $4::text) OFFSET 0) AS x",
+            table);
+    }
 
     // A query of rows alone, for what is of the newest.
     template <class... More>
@@ -199,16 +203,15 @@ class Reader {
                                        columns, table, kOfDays),
                            array_of(ids_), spans_.first_day, spans_.end_day, runs_.type_id),
                        Window::day});
+        const std::string of_hours = fmt::format(R"sql(
+SELECT x.station, x.hour, x.panel, x.region, x.type, {}
+FROM unnest($1::int[], $2::timestamptz[], $3::timestamptz[]) AS w(station, from_at, until_at)
+CROSS JOIN LATERAL (SELECT * FROM seamwright.hour_{} x WHERE x.station = w.station AND x.hour >= w.from_at AND
+    x.hour < w.until_at AND ($4::text = '' OR x.type = $4::text) OFFSET 0) AS x)sql",
+                                                 columns, table);
         if (!spans_.hours.empty())
             out.push_back(
-                {work_.exec_params(
-                     fmt::format(
-                         "SELECT x.station, x.hour, x.panel, x.region, x.type, {} FROM unnest($1::int[], "
-                         "$2::timestamptz[], $3::timestamptz[]) AS w(station, from_at, until_at) JOIN "
-                         "seamwright.hour_{} x ON x.station = w.station AND x.hour >= w.from_at AND "
-                         "x.hour < w.until_at WHERE $4::text = '' OR x.type = $4::text",
-                         columns, table),
-                     hours.stations, hours.from, hours.until, runs_.type_id),
+                {work_.exec_params(of_hours, hours.stations, hours.from, hours.until, runs_.type_id),
                  Window::hour});
         if (!spans_.rest_of_hours.empty())
             out.push_back({work_.exec_params(select, rest.stations, rest.from, rest.until, runs_.type_id),
@@ -255,15 +258,13 @@ class Reader {
 
     void runs() {
         std::set<std::pair<std::int64_t, std::int64_t>> setups;  // of a station
-        for (
-            const auto& row : ask(fmt::format(
-                "SELECT status, type, purpose, sum(runs), to_char(min(first), {0}), to_char(max(last), {0}), "
-                "station, made_with FROM (SELECT status, type, purpose, station, made_with, runs, first, "
-                "last "
-                "FROM seamwright.day_runs WHERE {1} UNION ALL SELECT x.status, x.type, x.purpose, x.station, "
-                "x.made_with, 1, x.started, x.started FROM {2} JOIN seamwright.run x ON {3}) AS r GROUP BY "
-                "status, type, purpose, station, made_with",
-                kUtc, kOfDays, kWindows, kInWindow))) {
+        const std::string sql = fmt::format(R"sql(
+SELECT status, type, purpose, sum(runs), to_char(min(first), {0}), to_char(max(last), {0}), station, made_with
+FROM (SELECT status, type, purpose, station, made_with, runs, first, last FROM seamwright.day_runs WHERE {1}
+      UNION ALL SELECT x.status, x.type, x.purpose, x.station, x.made_with, 1, x.started, x.started FROM {2}) AS r
+GROUP BY status, type, purpose, station, made_with)sql",
+                                            kUtc, kOfDays, in_windows("run"));
+        for (const auto& row : ask(sql)) {
             const int n = count(row[3]);
             const auto purpose = static_cast<RunPurpose>(whole(row[2]));
             const auto status = run_status_from(row[0].c_str());
@@ -309,14 +310,14 @@ class Reader {
         CycleTime c;
         double sum = 0, squares = 0;
         std::int64_t n = 0;
-        for (const auto& row : ask(fmt::format(
-                 "SELECT class, sum(runs), sum(seconds), sum(squares), max(longest) FROM (SELECT class, "
-                 "runs, "
-                 "seconds, squares, longest FROM seamwright.day_cycles WHERE {} UNION ALL SELECT {}, 1, "
-                 "x.cycle_ms / 1e3::float8, (x.cycle_ms / 1e3::float8) ^ 2, x.cycle_ms FROM {} JOIN "
-                 "seamwright.run x ON {} WHERE x.cycle_ms IS NOT NULL AND x.purpose = 0 AND x.status NOT IN "
-                 "('cancelled', 'interrupted')) AS r GROUP BY class ORDER BY class",
-                 kOfDays, fleet::cycle_class("x.cycle_ms"), kWindows, kInWindow))) {
+        const std::string sql = fmt::format(R"sql(
+SELECT class, sum(runs), sum(seconds), sum(squares), max(longest)
+FROM (SELECT class, runs, seconds, squares, longest FROM seamwright.day_cycles WHERE {}
+      UNION ALL SELECT {}, 1, x.cycle_ms / 1e3::float8, (x.cycle_ms / 1e3::float8) ^ 2, x.cycle_ms FROM {}
+      WHERE x.cycle_ms IS NOT NULL AND x.purpose = 0 AND x.status NOT IN ('cancelled', 'interrupted')) AS r
+GROUP BY class ORDER BY class)sql",
+                                            kOfDays, fleet::cycle_class("x.cycle_ms"), in_windows("run"));
+        for (const auto& row : ask(sql)) {
             classes.push_back({whole(row[1]), number(row[2]) / static_cast<double>(whole(row[1]))});
             n += whole(row[1]);
             sum += number(row[2]);
@@ -339,25 +340,26 @@ class Reader {
     }
 
     void refusals() {
-        for (const auto& row : ask(fmt::format(
-                 "SELECT panel, region, pattern, sum(n), to_char(max(last), {0}), (array_agg(body ORDER BY "
-                 "first))[1] FROM (SELECT panel, region, pattern, refusals AS n, first, last, body FROM "
-                 "seamwright.day_refusals WHERE {1} UNION ALL SELECT x.panel, x.region, x.pattern, 1, "
-                 "x.started, x.started, x.body FROM {2} JOIN seamwright.refusal x ON {3} WHERE x.production) "
-                 "AS r GROUP BY panel, region, pattern ORDER BY min(first)",
-                 kUtc, kOfDays, kWindows, kInWindow)))
+        const std::string sql = fmt::format(R"sql(
+SELECT panel, region, pattern, sum(n), to_char(max(last), {0}), (array_agg(body ORDER BY first))[1]
+FROM (SELECT panel, region, pattern, refusals AS n, first, last, body FROM seamwright.day_refusals WHERE {1}
+      UNION ALL SELECT x.panel, x.region, x.pattern, 1, x.started, x.started, x.body FROM {2} WHERE x.production) AS r
+GROUP BY panel, region, pattern ORDER BY min(first))sql",
+                                            kUtc, kOfDays, in_windows("refusal"));
+        for (const auto& row : ask(sql))
             totals(yes(row[0]), row[1].c_str())
                 .refusals.push_back(
                     {row[2].c_str(), text_from_stored(row[5].c_str()), count(row[3]), row[4].c_str()});
     }
 
     void unmeasured() {
-        for (const auto& row : ask(fmt::format(
-                 "SELECT spot, status, sum(n) FROM (SELECT spot, status, spots AS n, first FROM "
-                 "seamwright.day_unmeasured WHERE {} UNION ALL SELECT x.spot, x.status, 1, x.started FROM {} "
-                 "JOIN seamwright.unmeasured x ON {} WHERE x.production) AS r GROUP BY spot, status ORDER BY "
-                 "min(first)",
-                 kOfDays, kWindows, kInWindow)))
+        const std::string sql = fmt::format(R"sql(
+SELECT spot, status, sum(n)
+FROM (SELECT spot, status, spots AS n, first FROM seamwright.day_unmeasured WHERE {}
+      UNION ALL SELECT x.spot, x.status, 1, x.started FROM {} WHERE x.production) AS r
+GROUP BY spot, status ORDER BY min(first))sql",
+                                            kOfDays, in_windows("unmeasured"));
+        for (const auto& row : ask(sql))
             for (const SpotStatus s :
                  {SpotStatus::not_measured, SpotStatus::damaged_frame, SpotStatus::no_stripe,
                   SpotStatus::no_calibration, SpotStatus::no_feature})
@@ -452,27 +454,23 @@ class Reader {
         }
         // width_bucket counts what is at most its number.
         const auto in_hours = work_.exec_params(
-            "SELECT coalesce(sum(width_bucket($8::float8, h.vals) + cardinality(h.vals) - "
-            "width_bucket($9::float8, "
-            "h.vals)), 0) FROM unnest($1::int[], $2::text[], $3::timestamptz[], $4::interval[]) AS "
-            "w(station, type, "
-            "from_at, long) JOIN seamwright.hour_sums h ON h.station = w.station AND h.type = w.type AND "
-            "h.hour >= "
-            "w.from_at AND h.hour < w.from_at + w.long WHERE h.panel = $5 AND h.region = $6 AND h.key = $7 "
-            "AND "
-            "(h.lowest <= $8::float8 OR h.highest > $9::float8)",
+            R"sql(
+SELECT coalesce(sum(width_bucket($8::float8, h.vals) + cardinality(h.vals) - width_bucket($9::float8, h.vals)), 0)
+FROM unnest($1::int[], $2::text[], $3::timestamptz[], $4::interval[]) AS w(station, type, from_at, long)
+CROSS JOIN LATERAL (SELECT * FROM seamwright.hour_sums h WHERE h.station = w.station AND h.panel = $5 AND h.region = $6 AND
+    h.type = w.type AND h.key = $7 AND h.hour >= w.from_at AND h.hour < w.from_at + w.long OFFSET 0) AS h
+WHERE h.lowest <= $8::float8 OR h.highest > $9::float8)sql",
             array_of(stations), array_of(types), array_of(from), array_of(until), panel, id, key,
             bound(std::nextafter(lower, -kInfinity)), bound(upper));
         const auto in_rows = work_.exec_params(
-            "SELECT count(*) FROM unnest($1::int[], $2::text[], $3::timestamptz[], $4::timestamptz[]) AS "
-            "w(station, "
-            "type, from_at, until_at) JOIN seamwright.result s ON s.station = w.station AND s.type = w.type "
-            "AND "
-            "s.started >= w.from_at AND s.started < w.until_at JOIN seamwright.measurands m ON m.id = "
-            "s.measurands "
-            "CROSS JOIN LATERAL (SELECT s.vals[array_position(m.keys, $7)] AS x) AS v WHERE s.panel = $5 AND "
-            "s.region "
-            "= $6 AND s.used AND s.production AND (x < $8::float8 OR x > $9::float8)",
+            R"sql(
+SELECT count(*) FROM unnest($1::int[], $2::text[], $3::timestamptz[], $4::timestamptz[]) AS w(station, type, from_at, until_at)
+CROSS JOIN LATERAL (SELECT * FROM seamwright.result s WHERE s.station = w.station AND s.type = w.type AND
+    s.started >= w.from_at AND s.started < w.until_at AND s.panel = $5 AND s.region = $6 AND s.used AND s.production
+    OFFSET 0) AS s
+JOIN seamwright.measurands m ON m.id = s.measurands
+CROSS JOIN LATERAL (SELECT s.vals[array_position(m.keys, $7)] AS x) AS v
+WHERE x < $8::float8 OR x > $9::float8)sql",
             array_of(row_stations), array_of(row_types), array_of(row_from), array_of(row_until), panel, id,
             key, bound(lower), bound(upper));
         return count(in_hours[0][0]) + count(in_rows[0][0]);

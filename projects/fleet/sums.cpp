@@ -7,6 +7,9 @@
 namespace seamwright::fleet {
 namespace {
 
+// Windows of time w and the rows in each: "LATERAL ... OFFSET 0" has every window looked up in the index, which the planner, who does
+// not know that windows are narrow, would not do.
+
 // One row a value; `more`: further columns of the sums. Squares that the database could not hold, of values that nothing measures,
 // would refuse the run: one too small counts as 0, one too large not at all.
 std::string sums_of_rows(const std::string& more) {
@@ -25,7 +28,8 @@ FROM (
             CASE WHEN abs(u.x) < 1e-100 THEN 0 ELSE u.x END AS x,
             extract(epoch FROM s.started - date_trunc('day', w.from_at))::float8 / 86400 AS t
         FROM unnest($1::int[], $2::timestamptz[], $3::timestamptz[]) AS w(station, from_at, until_at)
-        JOIN seamwright.result s ON s.station = w.station AND s.started >= w.from_at AND s.started < w.until_at
+        CROSS JOIN LATERAL (SELECT * FROM seamwright.result s WHERE s.station = w.station AND s.started >= w.from_at AND
+    s.started < w.until_at OFFSET 0) AS s
         JOIN seamwright.measurands m ON m.id = s.measurands
         CROSS JOIN LATERAL unnest(s.vals, m.keys) AS u(x, key)
         WHERE s.production AND s.used AND abs(u.x) <= 1e100 AND ($4::text = '' OR s.type = $4::text)
@@ -50,7 +54,8 @@ SELECT station, day, panel, region, type, key, sum(n), sum(sx), sum(st), sum(sxx
 FROM (
     SELECT w.day, h.*, lag(h.last_x) OVER row AS ex, lag(h.last_t) OVER row AS et, lead(h.n) OVER row IS NULL AS last
     FROM unnest($1::int[], $2::date[]) AS w(station, day)
-    JOIN seamwright.hour_sums h ON h.station = w.station AND h.hour >= w.day AND h.hour < w.day + 1
+    CROSS JOIN LATERAL (SELECT * FROM seamwright.hour_sums h WHERE h.station = w.station AND h.hour >= w.day AND
+    h.hour < w.day + 1 OFFSET 0) AS h
     WINDOW row AS (PARTITION BY h.station, w.day, h.panel, h.region, h.type, h.key ORDER BY h.hour)
 ) AS hours
 GROUP BY station, day, panel, region, type, key)sql";
@@ -59,7 +64,8 @@ constexpr const char* kDayCounts = R"sql(
 INSERT INTO seamwright.day_counts (station, day, panel, region, type, runs, passed, over_limit, used)
 SELECT h.station, w.day, h.panel, h.region, h.type, sum(h.runs), sum(h.passed), sum(h.over_limit), sum(h.used)
 FROM unnest($1::int[], $2::date[]) AS w(station, day)
-JOIN seamwright.hour_counts h ON h.station = w.station AND h.hour >= w.day AND h.hour < w.day + 1
+CROSS JOIN LATERAL (SELECT * FROM seamwright.hour_counts h WHERE h.station = w.station AND h.hour >= w.day AND
+    h.hour < w.day + 1 OFFSET 0) AS h
 GROUP BY h.station, w.day, h.panel, h.region, h.type)sql";
 
 // Runs without a time are those of the day -infinity.
@@ -67,7 +73,8 @@ constexpr const char* kDayRuns = R"sql(
 INSERT INTO seamwright.day_runs (station, day, type, status, purpose, made_with, runs, first, last)
 SELECT r.station, w.day, r.type, r.status, r.purpose, r.made_with, count(*), min(r.started), max(r.started)
 FROM unnest($1::int[], $2::date[]) AS w(station, day)
-JOIN seamwright.run r ON r.station = w.station AND r.started >= w.day AND r.started < w.day + 1
+CROSS JOIN LATERAL (SELECT * FROM seamwright.run r WHERE r.station = w.station AND r.started >= w.day AND
+    r.started < w.day + 1 OFFSET 0) AS r
 WHERE isfinite(w.day)
 GROUP BY 1, 2, 3, 4, 5, 6
 UNION ALL
@@ -81,7 +88,8 @@ std::string day_cycles() {
 INSERT INTO seamwright.day_cycles (station, day, type, class, runs, seconds, squares, longest)
 SELECT r.station, w.day, r.type, {}, count(*), sum(r.cycle_ms / 1e3::float8), sum((r.cycle_ms / 1e3::float8) ^ 2), max(r.cycle_ms)
 FROM unnest($1::int[], $2::date[]) AS w(station, day)
-JOIN seamwright.run r ON r.station = w.station AND r.started >= w.day AND r.started < w.day + 1
+CROSS JOIN LATERAL (SELECT * FROM seamwright.run r WHERE r.station = w.station AND r.started >= w.day AND
+    r.started < w.day + 1 OFFSET 0) AS r
 WHERE r.cycle_ms IS NOT NULL AND r.purpose = 0 AND r.status NOT IN ('cancelled', 'interrupted') AND isfinite(w.day)
 GROUP BY 1, 2, 3, 4)sql",
                        cycle_class("r.cycle_ms"));
@@ -92,7 +100,8 @@ INSERT INTO seamwright.day_refusals (station, day, type, panel, region, pattern,
 SELECT x.station, w.day, x.type, x.panel, x.region, x.pattern, count(*), min(x.started), max(x.started),
     (array_agg(x.body ORDER BY x.started, x.run))[1]
 FROM unnest($1::int[], $2::date[]) AS w(station, day)
-JOIN seamwright.refusal x ON x.station = w.station AND x.started >= w.day AND x.started < w.day + 1
+CROSS JOIN LATERAL (SELECT * FROM seamwright.refusal x WHERE x.station = w.station AND x.started >= w.day AND
+    x.started < w.day + 1 OFFSET 0) AS x
 WHERE x.production AND isfinite(w.day)
 GROUP BY 1, 2, 3, 4, 5, 6)sql";
 
@@ -100,7 +109,8 @@ constexpr const char* kDayUnmeasured = R"sql(
 INSERT INTO seamwright.day_unmeasured (station, day, type, spot, status, spots, first)
 SELECT x.station, w.day, x.type, x.spot, x.status, count(*), min(x.started)
 FROM unnest($1::int[], $2::date[]) AS w(station, day)
-JOIN seamwright.unmeasured x ON x.station = w.station AND x.started >= w.day AND x.started < w.day + 1
+CROSS JOIN LATERAL (SELECT * FROM seamwright.unmeasured x WHERE x.station = w.station AND x.started >= w.day AND
+    x.started < w.day + 1 OFFSET 0) AS x
 WHERE x.production AND isfinite(w.day)
 GROUP BY 1, 2, 3, 4, 5)sql";
 
@@ -165,7 +175,8 @@ std::string counts_select() {
 SELECT w.station, w.from_at, s.panel, s.region, s.type, count(*), count(*) FILTER (WHERE s.passed),
     count(*) FILTER (WHERE NOT s.passed AND s.status = 'over_limit'), count(*) FILTER (WHERE s.used)
 FROM unnest($1::int[], $2::timestamptz[], $3::timestamptz[]) AS w(station, from_at, until_at)
-JOIN seamwright.result s ON s.station = w.station AND s.started >= w.from_at AND s.started < w.until_at
+CROSS JOIN LATERAL (SELECT * FROM seamwright.result s WHERE s.station = w.station AND s.started >= w.from_at AND
+    s.started < w.until_at OFFSET 0) AS s
 WHERE s.production AND ($4::text = '' OR s.type = $4::text)
 GROUP BY w.station, w.from_at, s.panel, s.region, s.type)sql";
 }

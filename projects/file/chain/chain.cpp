@@ -26,9 +26,9 @@ struct ChainedTable {
     const char* table;
     std::string_view kind;
 };
-constexpr std::array<const char*, 14> kOfProject{
+constexpr std::array<const char*, 15> kOfProject{
     "project", "requirements", "part", "sensors",    "robots",  "calibrations", "spots",
-    "regions", "panel_jobs",   "line", "part_types", "elastic", "drift_watch",  "fixture"};
+    "regions", "panel_jobs",   "line", "part_types", "elastic", "drift_watch",  "fixture", "fleet"};
 constexpr std::array<ChainedTable, 4> kByRow{
     {{"setups", "setup"}, {"evidence", "evidence"}, {"drift_points", "drift point"}, {"scans", "scan"}}};
 // What is of one run, and the order of its rows.
@@ -290,10 +290,13 @@ Expected<void> begin_chain(Database& db, std::int32_t from_version) {
     const auto add = [&](std::string_view kind, const std::string& subject, const Digest& digest) {
         return append_chain(db, {}, kind, subject, digest);
     };
-    for (const char* table : kOfProject)
+    SEAM_TRY(const std::int64_t version, db.integer("PRAGMA user_version"));
+    for (const char* table : kOfProject) {
+        if (columns_of(table).since > version) continue;  // a later migration makes it, empty
         SEAM_OK(every_row(db, table, [&](const std::string& key, const Digest& digest) {
             return add(kProject, subject_of(table, key), digest);
         }));
+    }
     for (const ChainedTable& t : kByRow)
         SEAM_OK(every_row(db, t.table, [&](const std::string& key, const Digest& digest) {
             return add(t.kind, key, digest);

@@ -463,7 +463,7 @@ TEST(ProjectFile, IdsHaveALength) {
     {
         auto db = Database::open((folder / "a.seam").string(), SQLITE_OPEN_READWRITE).value();
         ASSERT_TRUE(
-            db.execute("DROP TABLE users; DROP TABLE chain; DROP TABLE fixture; DROP TABLE outbox; PRAGMA "
+            db.execute("DROP TABLE users; DROP TABLE chain; DROP TABLE fixture; DROP TABLE outbox; DROP TABLE fleet; PRAGMA "
                        "user_version = 11"));
     }
     auto old = ProjectFile::open(folder / "a.seam");

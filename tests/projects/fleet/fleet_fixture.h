@@ -41,7 +41,7 @@ class Fleet : public testing::Test {
     }
     ProjectFile make(const std::string& name, const std::vector<RunRecord>& runs) {
         auto file = ProjectFile::create(folder_ / name, project_);
-        EXPECT_TRUE(file);
+        EXPECT_TRUE(file) << sentence(file);
         for (const RunRecord& run : runs) EXPECT_TRUE(file->append_run(run, project_));
         return std::move(*file);
     }

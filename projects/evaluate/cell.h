@@ -19,6 +19,10 @@
 #include "devices/simulated/scene/renderer.h"
 #include "projects/measure/measure.h"
 
+namespace seamwright {
+class Parts;
+}
+
 namespace seamwright::evaluation {
 
 inline constexpr int kOnline = 6;  // the online correction, simulated (online.h)
@@ -35,6 +39,7 @@ struct EvaluationSettings {
     double bend_mm = 0;  // of the measured door against the taught one
     // Of every sensor's believed pose, one sigma per axis, the same when teaching and when measuring.
     double calibration_mm = 0, calibration_deg = 0;
+    Parts* parts = nullptr;  // of several processes; none: all of it here
 };
 
 // How a spot is measured.

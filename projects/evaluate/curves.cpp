@@ -1,4 +1,5 @@
 #include "projects/evaluate/curves.h"
+#include "projects/evaluate/spread.h"
 
 #include <algorithm>
 #include <array>
@@ -46,7 +47,7 @@ Expected<CurvedContour> curved_contour(const EvaluationSettings& settings, doubl
         std::array<int, 2> solved{};
         std::vector<double> squares;  // of the learnt one; per spot
     };
-    spread_out(settings.jobs, out.steps.size(), [&] {
+    const auto worker = [&] {
         return [&, measurers = std::make_shared<Measurers>(make_measurers(taught)),
                 frame = std::make_shared<Frame>()](std::size_t i) {
             Random random(hash64(settings.seed, static_cast<std::uint64_t>(radius_mm)), i);
@@ -107,6 +108,12 @@ Expected<CurvedContour> curved_contour(const EvaluationSettings& settings, doubl
             step.region_straight_mm = largest_deviation(spots, sums.deviation[0], sums.solved[0]);
             step.region_learnt_mm = largest_deviation(spots, sums.deviation[1], sums.solved[1]);
         };
+    };
+    spread_values(settings, profiles, out.steps.size(), worker, [&](PartValue& part, std::size_t i) {
+        CurveStep& s = out.steps[i];
+        for (double* v : {&s.displacement_mm, &s.expected_mm, &s.straight_mm, &s.learnt_mm, &s.sigma_mm,
+                          &s.learnt_worst_mm, &s.region_straight_mm, &s.region_learnt_mm})
+            part(*v);
     });
     return out;
 }

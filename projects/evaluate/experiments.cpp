@@ -1,4 +1,5 @@
 #include "projects/evaluate/experiments.h"
+#include "projects/evaluate/spread.h"
 
 #include <fmt/format.h>
 
@@ -65,10 +66,19 @@ void run_trial(const Cell& cell, const Method& method, const TaughtCell& taught,
     if (const auto solved = correct(taught.project, measurements)) judge(taught.spots, *solved, truth, trial);
 }
 
+void hand_over(PartValue& part, EvaluationTrial& trial) {
+    part(trial.displacement);
+    part(trial.ok);
+    part(trial.mean_abs_mm);
+    part.list(trial.deviations_mm, [&](double& v) { part(v); });
+    part(trial.nees);
+    part(trial.stated_variance_mm2);
+}
+
 void run_column(const Cell& cell, const Method& method, const TaughtCell& taught, int column,
                 std::vector<EvaluationTrial>& trials) {
     trials.assign(3 * kSteps, {});
-    spread_out(cell.settings.jobs, trials.size(), [&] {
+    const auto worker = [&] {
         return [&, measurers = std::make_shared<Measurers>(make_measurers(taught)),
                 frame = std::make_shared<Frame>()](std::size_t i) {
             Random random(
@@ -76,7 +86,9 @@ void run_column(const Cell& cell, const Method& method, const TaughtCell& taught
             const Pose truth = grid_displacement(column, i, trials[i].displacement);
             run_trial(cell, method, taught, *measurers, truth, random, *frame, trials[i]);
         };
-    });
+    };
+    spread_values(cell.settings, *cell.profiles, trials.size(), worker,
+                  [&](PartValue& part, std::size_t i) { hand_over(part, trials[i]); });
 }
 
 Summary summary_of(const std::vector<EvaluationTrial>& trials) {
@@ -206,8 +218,9 @@ void noise_alone(const Cell& cell, const TaughtCell& taught, StraightTrials& out
     }
     const auto count = static_cast<std::size_t>(out.trials);
     std::vector<std::optional<Vector6>> found(count), found_one_sigma(count);
-    std::vector<std::vector<Eigen::Vector2d>> points(count);
-    spread_out(cell.settings.jobs, count, [&] {
+    const std::vector<Eigen::Vector2d> none(spots.size(), Eigen::Vector2d::Zero());
+    std::vector<std::vector<Eigen::Vector2d>> points(count, none);
+    const auto worker = [&] {
         return [&, measurers = std::make_shared<Measurers>(make_measurers(taught)),
                 frame = std::make_shared<Frame>()](std::size_t i) {
             Random random(hash64(cell.settings.seed, 7), i);
@@ -217,7 +230,7 @@ void noise_alone(const Cell& cell, const TaughtCell& taught, StraightTrials& out
                 add_noise(frame->profile, cell.settings.noise_mm, random);
                 ++*cell.profiles;
                 const SpotMeasurement& m = (*measurers)[n].measure(*frame);
-                points[i].push_back(m.feature.point_mm);
+                points[i][n] = m.feature.point_mm;
                 if (m.status == SpotStatus::measured) observed.push_back(observation_of(spots[n], m));
             }
             CorrectionOptions all;
@@ -234,6 +247,12 @@ void noise_alone(const Cell& cell, const TaughtCell& taught, StraightTrials& out
             }
             found_one_sigma[i] = solve();
         };
+    };
+    spread_values(cell.settings, *cell.profiles, count, worker, [&](PartValue& part, std::size_t i) {
+        const auto matrix = [&](auto& m) { part.matrix(m); };
+        part.maybe(found[i], matrix);
+        part.maybe(found_one_sigma[i], matrix);
+        part.list(points[i], matrix);
     });
     Spread6 spread, one_sigma;
     spread.finish(found);
@@ -258,7 +277,7 @@ void noise_alone(const Cell& cell, const TaughtCell& taught, StraightTrials& out
 // Everything but deformation and calibration error, at random displacements.
 double displaced_nees(const Cell& cell, const Method& method, const TaughtCell& taught, StraightTrials& out) {
     std::vector<EvaluationTrial> trials(static_cast<std::size_t>(out.trials));
-    spread_out(cell.settings.jobs, trials.size(), [&] {
+    const auto worker = [&] {
         return [&, measurers = std::make_shared<Measurers>(make_measurers(taught)),
                 frame = std::make_shared<Frame>()](std::size_t i) {
             Random random(hash64(cell.settings.seed, method.in_motion ? 8 : 9), i);
@@ -271,7 +290,9 @@ double displaced_nees(const Cell& cell, const Method& method, const TaughtCell& 
             run_trial(cell, method, taught, *measurers, turned_about_middle(move, turn), random, *frame,
                       trials[i]);
         };
-    });
+    };
+    spread_values(cell.settings, *cell.profiles, trials.size(), worker,
+                  [&](PartValue& part, std::size_t i) { hand_over(part, trials[i]); });
     double sum = 0;
     for (const EvaluationTrial& t : trials) sum += t.nees;
     const int refused = refused_of(trials);
@@ -393,6 +414,8 @@ Expected<EvaluationResult> evaluate(const EvaluationSettings& settings,
         SEAM_TRY(auto online, online_experiment(out.settings, profiles));
         out.online = std::move(online);
     }
+    if (settings.parts) SEAM_OK(settings.parts->check());
+    out.settings.parts = nullptr;
     out.profiles = profiles;
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return out;

@@ -95,7 +95,8 @@ struct EvaluationResult {
 // Size of the budget's sources that an experiment itself is free of.
 inline constexpr double kBudgetBendMm = 0.3, kBudgetCalibrationMm = 0.1, kBudgetCalibrationDeg = 0.1;
 
-// Deterministic for a seed, whatever the number of jobs. Error: a spot cannot be taught.
+// Deterministic for a seed, whatever the number of jobs, and of parts that are collected; of a part alone only what stands in
+// settings.parts is of use. Error: a spot cannot be taught.
 Expected<EvaluationResult> evaluate(const EvaluationSettings& settings,
                                     const std::function<void(const std::string&)>& progress);
 

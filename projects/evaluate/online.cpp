@@ -1,4 +1,5 @@
 #include "projects/evaluate/online.h"
+#include "projects/evaluate/spread.h"
 
 #include <algorithm>
 #include <cmath>
@@ -329,7 +330,7 @@ Expected<OnlineExperiment> online_experiment(const EvaluationSettings& settings,
     const MeshTree bent_tree(std::move(bent_mesh));
 
     std::vector<PartErrors> errors(out.results.size() * kParts);
-    spread_out(settings.jobs, errors.size(), [&] {
+    const auto worker = [&] {
         return [&](std::size_t i) {
             const OnlineResult& result = out.results[i / kParts];
             // The same parts for every way.
@@ -350,6 +351,14 @@ Expected<OnlineExperiment> online_experiment(const EvaluationSettings& settings,
             errors[i] = result.way.online ? run_online(w, result.way, part, tree, random)
                                           : run_offline(w, part, tree, random);
         };
+    };
+    spread_values(settings, profiles, errors.size(), worker, [&](PartValue& part, std::size_t i) {
+        PartErrors& e = errors[i];
+        part(e.alarm);
+        part.list(e.arc_mm, [&](double& v) { part(v); });
+        part.list(e.error, [&](Eigen::Vector2d& v) { part.matrix(v); });
+        part(e.behind);
+        part(e.variance);
     });
     for (std::size_t k = 0; k < out.results.size(); ++k) {
         OnlineResult& r = out.results[k];

@@ -630,6 +630,14 @@ void describe(A& a, ActingDrift& v) {
     if (A::reading || v.standing_mm != 0) a("standing_mm", v.standing_mm);
 }
 template <class A>
+void describe(A& a, FleetLink& v) {
+    a("id", v.id);
+    a("address", v.address);
+    if (A::reading || !v.station.empty()) a("station", v.station);
+    if constexpr (A::reading)
+        if (has_password(v.address)) a.fail("the fleet's address holds a password");
+}
+template <class A>
 void describe(A& a, Project& v) {
     a("name", v.name);
     a("requirements", v.requirements);
@@ -645,6 +653,7 @@ void describe(A& a, Project& v) {
     if (A::reading || !v.elastic.empty()) a("elastic", v.elastic);
     if (A::reading || v.drift) a("drift", v.drift);
     if (A::reading || v.fixture) a("fixture", v.fixture);
+    if (A::reading || v.fleet) a("fleet", v.fleet);
 }
 
 // --- runs

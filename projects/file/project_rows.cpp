@@ -180,18 +180,19 @@ std::vector<T> one_or_none(const std::optional<T>& thing) {
 
 Expected<std::vector<RowChange>> save_rows_of(Database& db, const Project& project) {
     std::vector<RowChange> changes;
-    for (const auto& sound : {check_ids(db, "sensors", ids_of(project.sensors), "sensor"),
-                              check_ids(db, "robots", ids_of(project.robots), "robot"),
-                              check_ids(db, "calibrations", ids_of(project.calibrations), "calibration"),
-                              check_ids(db, "spots", ids_of(project.spots), "spot"),
-                              check_ids(db, "regions", ids_of(project.regions), "region"),
-                              check_ids(db, "panel_jobs", ids_of(project.panel_jobs), "panel job"),
-                              check_ids(db, "line", ids_of(project.line), "line link"),
-                              check_ids(db, "part_types", ids_of(project.part_types), "part type"),
-                              check_ids(db, "elastic", ids_of(project.elastic), "region with mode"),
-                              check_ids(db, "drift_watch", ids_of(one_or_none(project.drift)), "drift watch"),
-                              check_ids(db, "fixture", ids_of(one_or_none(project.fixture)), "fixture"),
-                              check_part_types(project)})
+    for (const auto& sound :
+         {check_ids(db, "sensors", ids_of(project.sensors), "sensor"),
+          check_ids(db, "robots", ids_of(project.robots), "robot"),
+          check_ids(db, "calibrations", ids_of(project.calibrations), "calibration"),
+          check_ids(db, "spots", ids_of(project.spots), "spot"),
+          check_ids(db, "regions", ids_of(project.regions), "region"),
+          check_ids(db, "panel_jobs", ids_of(project.panel_jobs), "panel job"),
+          check_ids(db, "line", ids_of(project.line), "line link"),
+          check_ids(db, "part_types", ids_of(project.part_types), "part type"),
+          check_ids(db, "elastic", ids_of(project.elastic), "region with mode"),
+          check_ids(db, "drift_watch", ids_of(one_or_none(project.drift)), "drift watch"),
+          check_ids(db, "fixture", ids_of(one_or_none(project.fixture)), "fixture"),
+          check_ids(db, "fleet", ids_of(one_or_none(project.fleet)), "fleet"), check_part_types(project)})
         if (!sound) return tl::unexpected(sound.error());
 
     const char* name_row = R"(
@@ -311,6 +312,15 @@ Expected<std::vector<RowChange>> save_rows_of(Database& db, const Project& proje
                           s.bind(3, text);
                           return s.run();
                       }));
+    SEAM_OK(save_rows(db, "fleet", {"body"}, one_or_none(project.fleet), changes,
+                      [](Statement& s, const FleetLink& fleet) -> Expected<void> {
+                          if (has_password(fleet.address))
+                              return input_error("a project is no place for a password, its file is copied",
+                                                 "fleet", "leave it out and write it into ~/.pgpass");
+                          SEAM_TRY(auto text, row_text(fleet, "fleet", kRow));
+                          s.bind(3, text);
+                          return s.run();
+                      }));
     return changes;
 }
 
@@ -330,11 +340,12 @@ Expected<void> chain_changes(Database& db, const std::string& person, const std:
 Expected<Project> load_rows_of(Database& db) {
     for (const char* table :
          {"project", "requirements", "part", "sensors", "robots", "calibrations", "spots", "regions",
-          "panel_jobs", "line", "part_types", "elastic", "drift_watch", "fixture"})
+          "panel_jobs", "line", "part_types", "elastic", "drift_watch", "fixture", "fleet"})
         SEAM_OK(check_rows(db, table));
     Project project;
     std::vector<DriftWatch> drift;
     std::vector<Fixture> fixture;
+    std::vector<FleetLink> fleet;
     SEAM_TRY(auto name, db.prepare("SELECT name FROM project"));
     SEAM_OK(for_each_row(name, [&](Statement& row) -> Expected<void> {
         project.name = row.text(0);
@@ -369,10 +380,12 @@ Expected<Project> load_rows_of(Database& db) {
 
           load_rows(db, "SELECT id, body FROM elastic ORDER BY position", "modes of region", project.elastic),
           load_rows(db, "SELECT id, body FROM drift_watch ORDER BY position LIMIT 1", "drift watch", drift),
-          load_rows(db, "SELECT id, body FROM fixture ORDER BY position LIMIT 1", "fixture", fixture)})
+          load_rows(db, "SELECT id, body FROM fixture ORDER BY position LIMIT 1", "fixture", fixture),
+          load_rows(db, "SELECT id, body FROM fleet ORDER BY position LIMIT 1", "fleet", fleet)})
         if (!done) return tl::unexpected(done.error());
     if (!drift.empty()) project.drift = std::move(drift.front());
     if (!fixture.empty()) project.fixture = std::move(fixture.front());
+    if (!fleet.empty()) project.fleet = std::move(fleet.front());
     return project;
 }
 

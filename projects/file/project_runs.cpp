@@ -196,6 +196,7 @@ Expected<RunSetup> RunSetup::of(const Project& project) {
     slim.line.clear();
     slim.drift.reset();
     slim.fixture.reset();
+    slim.fleet.reset();
     std::erase_if(slim.elastic, [](const RegionModes& modes) { return !modes.on; });
     for (Calibration& c : slim.calibrations) {
         c.raw = nlohmann::json::object();

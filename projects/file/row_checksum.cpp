@@ -9,7 +9,7 @@
 namespace seamwright {
 namespace {
 
-constexpr std::array<ChecksummedTable, 27> kTables{{
+constexpr std::array<ChecksummedTable, 28> kTables{{
     {"project", "name", "id, name, created_utc"},
     {"requirements", "id", "id, body"},
     {"part", "id", "id, body, mesh"},
@@ -36,6 +36,7 @@ constexpr std::array<ChecksummedTable, 27> kTables{{
     {"run_panels", "run", "run, job_id, gate_passed, body"},
     {"events", "id", "id, utc, run, kind, subject, text"},
     {"evidence", "id", "id, utc, kind, subject, setup, body"},
+    {"fleet", "id", "id, position, body", 15},
     {"outbox", "run", "run, revision, message", 13},
 }};
 

@@ -327,7 +327,17 @@ CREATE TABLE guides (
 ) STRICT;
 )sql";
 
-constexpr std::array<Migration, 14> kMigrations{{{1, kVersion1},
+// The fleet that the results go to.
+constexpr const char* kVersion15 = R"sql(
+CREATE TABLE fleet (
+    id TEXT PRIMARY KEY NOT NULL,
+    position INTEGER NOT NULL,
+    body TEXT NOT NULL,
+    checksum INTEGER NOT NULL
+) STRICT;
+)sql";
+
+constexpr std::array<Migration, 15> kMigrations{{{1, kVersion1},
                                                  {2, kVersion2},
                                                  {3, kVersion3},
                                                  {4, kVersion4},
@@ -340,7 +350,8 @@ constexpr std::array<Migration, 14> kMigrations{{{1, kVersion1},
                                                  {11, kVersion11},
                                                  {12, kVersion12},
                                                  {13, kVersion13},
-                                                 {14, kVersion14}}};
+                                                 {14, kVersion14},
+                                                 {15, kVersion15}}};
 
 // The tables of a fresh file of that version; made once for each version, since making them costs more than
 // checking a file does.

@@ -53,12 +53,13 @@ Expected<FleetStanding> fleet_standing(const FleetTarget& target, int newest_par
                  "SELECT s.name, coalesce(to_char(s.published, {}), ''), coalesce(c.runs, 0), "
                  "coalesce(c.parts, 0), "
                  "coalesce(c.ok, 0), coalesce(c.refused, 0), l.* FROM seamwright.station s LEFT JOIN "
-                 "(SELECT station, count(*) AS runs, count(*) FILTER (WHERE p) AS parts, count(*) FILTER "
-                 "(WHERE p AND status = "
-                 "'ok') AS ok, count(*) FILTER (WHERE p AND status = 'refused') AS refused FROM (SELECT "
-                 "station, status, purpose "
-                 "= 0 AND status NOT IN ('cancelled', 'interrupted') AS p FROM seamwright.run) AS r GROUP BY "
-                 "station) AS c ON "
+                 "(SELECT station, sum(runs) AS runs, sum(runs) FILTER (WHERE p) AS parts, sum(runs) FILTER "
+                 "(WHERE p AND "
+                 "status = 'ok') AS ok, sum(runs) FILTER (WHERE p AND status = 'refused') AS refused FROM "
+                 "(SELECT "
+                 "station, status, runs, purpose = 0 AND status NOT IN ('cancelled', 'interrupted') AS p "
+                 "FROM "
+                 "seamwright.day_runs) AS r GROUP BY station) AS c ON "
                  "c.station = s.id LEFT JOIN LATERAL (SELECT {} FROM seamwright.run r WHERE r.station = s.id "
                  "ORDER BY started "
                  "DESC NULLS LAST LIMIT 1) AS l ON true ORDER BY s.name",
@@ -78,7 +79,7 @@ Expected<FleetStanding> fleet_standing(const FleetTarget& target, int newest_par
              work.exec_params(fmt::format("SELECT s.name, l.* FROM seamwright.station s CROSS JOIN LATERAL "
                                           "(SELECT {} FROM seamwright.run r "
                                           "WHERE r.station = s.id AND started IS NOT NULL ORDER BY started "
-                                          "DESC LIMIT $1) AS l ORDER BY "
+                                          "DESC NULLS LAST LIMIT $1) AS l ORDER BY "
                                           "l.utc DESC LIMIT $1",
                                           newest),
                               newest_parts))

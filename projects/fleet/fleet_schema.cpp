@@ -3,6 +3,7 @@
 #include <array>
 
 #include "projects/fleet/connection.h"
+#include "projects/fleet/sums.h"
 
 namespace seamwright {
 namespace {
@@ -124,7 +125,94 @@ CREATE TABLE seamwright.day_sums (
 );
 )sql";
 
-constexpr std::array<const char*, 1> kMigrations{kVersion1};
+// Sums by the hour and kept up to date with every run, where there were those of closed days.
+constexpr const char* kVersion2 = R"sql(
+DROP TABLE seamwright.station_day;
+DROP INDEX seamwright.run_by_time;
+CREATE INDEX run_newest ON seamwright.run (station, started DESC NULLS LAST);
+CREATE INDEX refusal_by_time ON seamwright.refusal (station, started);
+CREATE INDEX unmeasured_by_time ON seamwright.unmeasured (station, started);
+CREATE TABLE seamwright.hour_counts (
+    station int NOT NULL,
+    hour timestamptz NOT NULL,
+    panel boolean NOT NULL,
+    region text NOT NULL,
+    type text NOT NULL,
+    runs bigint NOT NULL,
+    passed bigint NOT NULL,
+    over_limit bigint NOT NULL,
+    used bigint NOT NULL,
+    PRIMARY KEY (station, hour, panel, region, type)
+);
+CREATE TABLE seamwright.hour_sums (
+    station int NOT NULL,
+    hour timestamptz NOT NULL,
+    panel boolean NOT NULL,
+    region text NOT NULL,
+    type text NOT NULL,
+    key text NOT NULL,
+    n float8 NOT NULL, sx float8, st float8, sxx float8, sxt float8, stt float8,
+    pn float8, px float8, px0 float8, pt float8, pt0 float8, pxx float8, pxt float8, ptx float8, ptt float8,
+    ranges float8, lowest float8, highest float8,
+    first_x float8, first_t float8, last_x float8, last_t float8,
+    vals float8[] NOT NULL,
+    PRIMARY KEY (station, panel, region, type, key, hour)
+);
+CREATE INDEX hour_sums_by_hour ON seamwright.hour_sums (station, hour);
+COMMENT ON COLUMN seamwright.hour_sums.vals IS 'the values in ascending order';
+CREATE TABLE seamwright.day_runs (
+    station int NOT NULL,
+    day date NOT NULL,
+    type text NOT NULL,
+    status text NOT NULL,
+    purpose smallint NOT NULL,
+    made_with bigint NOT NULL,
+    runs bigint NOT NULL,
+    first timestamptz,
+    last timestamptz
+);
+COMMENT ON COLUMN seamwright.day_runs.day IS '-infinity: runs without a time';
+CREATE INDEX day_runs_by_day ON seamwright.day_runs (station, day);
+CREATE TABLE seamwright.day_cycles (
+    station int NOT NULL,
+    day date NOT NULL,
+    type text NOT NULL,
+    class bigint NOT NULL,
+    runs bigint NOT NULL,
+    seconds float8 NOT NULL,
+    squares float8 NOT NULL,
+    longest bigint NOT NULL
+);
+COMMENT ON COLUMN seamwright.day_cycles.class IS 'milliseconds to three digits';
+CREATE INDEX day_cycles_by_day ON seamwright.day_cycles (station, day);
+CREATE TABLE seamwright.day_refusals (
+    station int NOT NULL,
+    day date NOT NULL,
+    type text NOT NULL,
+    panel boolean NOT NULL,
+    region text NOT NULL,
+    pattern text NOT NULL,
+    refusals bigint NOT NULL,
+    first timestamptz NOT NULL,
+    last timestamptz NOT NULL,
+    body text NOT NULL
+);
+CREATE INDEX day_refusals_by_day ON seamwright.day_refusals (station, day);
+CREATE TABLE seamwright.day_unmeasured (
+    station int NOT NULL,
+    day date NOT NULL,
+    type text NOT NULL,
+    spot text NOT NULL,
+    status text NOT NULL,
+    spots bigint NOT NULL,
+    first timestamptz NOT NULL
+);
+CREATE INDEX day_unmeasured_by_day ON seamwright.day_unmeasured (station, day);
+)sql";
+
+constexpr std::array<const char*, 2> kMigrations{kVersion1, kVersion2};
+// The newest version after which the sums have to be made anew of the runs.
+constexpr int kSumsChanged = 2;
 constexpr const char* kLock = "SELECT pg_advisory_xact_lock(8314875026138661223)";  // any number, ours alone
 
 }  // namespace
@@ -152,10 +240,13 @@ Expected<FleetInit> init_fleet(const FleetTarget& target) {
             "CREATE TABLE IF NOT EXISTS seamwright.migration (version int PRIMARY KEY, applied timestamptz "
             "NOT "
             "NULL DEFAULT now())");
+        // Whoever publishes looks at the version first, and goes on with the one there was or waits for the other.
+        work.exec("LOCK TABLE seamwright.migration IN ACCESS EXCLUSIVE MODE");
         for (int version = out.before + 1; version <= out.version; ++version) {
             work.exec(kMigrations[static_cast<std::size_t>(version - 1)]);
             work.exec_params("INSERT INTO seamwright.migration (version) VALUES ($1)", version);
         }
+        if (out.before < kSumsChanged) fleet::rebuild_sums(work);
         work.commit();
         return out;
     });

@@ -4,8 +4,8 @@
 //
 // One row of `run` a run, by its id for ever once (unique), with its results (a region's displacement, sigma and values; a panel's
 // gaps), refusals and unmeasured spots. `setup` holds what of the stations' projects the numbers need: limits, places, names; no
-// settings of devices. Of each station and day (UTC) that no run has come to since, `day_sums` and `day_counts` hold what the
-// statistics add up (core/statistics/row_sums.h).
+// settings of devices. Tables named hour_ and day_ hold of each station and hour or day (UTC) what the statistics add up
+// (projects/fleet/sums.h); they say nothing that the runs do not.
 
 #include "projects/fleet/target.h"
 
@@ -16,8 +16,8 @@ struct FleetInit {
     int version = 0;
 };
 int fleet_schema_version();  // that this program knows
-// Makes the schema or brings it up to date, all or nothing; without effect on a current one. Error (device): it is newer, no
-// server, no right.
+// Makes the schema or brings it up to date, all or nothing; without effect on a current one. Programs that know another version
+// publish nothing from then on. Minutes for a million runs that are there. Error (device): it is newer, no server, no right.
 Expected<FleetInit> init_fleet(const FleetTarget& target);
 
 }  // namespace seamwright

@@ -13,7 +13,9 @@
 #include "projects/file/project_json.h"
 #include "projects/file/stored_text.h"
 #include "projects/fleet/message.h"
+#include "projects/fleet/spans.h"
 #include "projects/fleet/store.h"
+#include "projects/fleet/sums.h"
 
 namespace seamwright {
 namespace {
@@ -62,6 +64,14 @@ struct Key {
     auto operator<=>(const Key&) const = default;
 };
 
+// A day, an hour or what a time cuts of one, in which values may lie beyond limits.
+struct Window {
+    std::int64_t station = 0;
+    std::string type, from;
+    enum { rows, hour, day } sums = rows;
+    double lowest = 0, highest = 0;
+};
+
 // What one query of sums_select() or day_sums says, in its columns from `c` on.
 RowSums sums_of(const pqxx::row& row, int c) {
     const auto at = [&](int k) { return number(row[c + k]); };
@@ -83,8 +93,8 @@ class Reader {
         : work_(work), target_(target), options_(options), runs_(options.statistics.runs) {}
 
     Expected<Statistics> read() {
+        SEAM_TRY(spans_, fleet::spans_of(runs_.since_utc, runs_.until_utc));
         SEAM_OK(stations());
-        split_days();
         counts();
         sums();
         runs();
@@ -126,60 +136,87 @@ class Reader {
         return {};
     }
 
-    // What lies between $n and the one after it.
-    std::string in_time(const char* column) const {
-        return fmt::format(
-            "{0} IS NOT NULL AND ($2::text = '' OR {0} >= $2::text::timestamptz) AND ($3::text = '' OR {0} < "
-            "$3::text::timestamptz)",
-            column);
+    // The stations' windows as the arrays of a query.
+    struct Windows {
+        std::string stations, from, until;
+    };
+    Windows windows(const std::vector<fleet::Span>& spans) const {
+        std::vector<std::int64_t> stations;
+        std::vector<std::string> from, until;
+        for (const std::int64_t id : ids_)
+            for (const fleet::Span& span : spans) {
+                stations.push_back(id);
+                from.push_back(fleet::time_text(span.from));
+                until.push_back(fleet::time_text(span.until));
+            }
+        return {array_of(stations), array_of(from), array_of(until)};
     }
-    // With $1 stations, $2 since, $3 until, $4 type.
+
+    // A query of the whole days' sums (kOfDays) and of the rows of the rest (in_windows).
+    pqxx::result ask(const std::string& sql) {
+        const Windows rest = windows(spans_.rest_of_days);
+        return work_.exec_params(sql, array_of(ids_), spans_.first_day, spans_.end_day, runs_.type_id,
+                                 rest.stations, rest.from, rest.until);
+    }
+    static constexpr const char* kOfDays =
+        "station = ANY ($1::int[]) AND day >= $2::date AND day < $3::date AND isfinite(day) AND ($4::text = "
+        "'' OR "
+        "type = $4::text)";
+    // Rows x of a table in the windows; "LATERAL ... OFFSET 0" has each of them looked up in the index.
+    static std::string in_windows(const char* table) {
+        return fmt::format(
+            "unnest($5::int[], $6::timestamptz[], $7::timestamptz[]) AS w(station, from_at, until_at) CROSS "
+            "JOIN "
+            "LATERAL (SELECT * FROM seamwright.{} x WHERE x.station = w.station AND x.started >= w.from_at "
+            "AND "
+            "x.started < w.until_at AND ($4::text = '' OR x.type = $4::text) OFFSET 0) AS x",
+            table);
+    }
+
+    // A query of rows alone, for what is of the newest.
     template <class... More>
-    pqxx::result ask(const std::string& sql, const More&... more) {
+    pqxx::result ask_rows(const std::string& sql, const More&... more) {
         return work_.exec_params(sql, array_of(ids_), runs_.since_utc, runs_.until_utc, runs_.type_id,
                                  more...);
     }
-
-    // Days whose sums are there and lie in the time as a whole; of all others the windows to be summed.
-    void split_days() {
-        for (const auto& row :
-             ask("SELECT station, day, d.done AND ($2::text = '' OR day_from >= $2::text::timestamptz) AND "
-                 "($3::text = '' OR "
-                 "day_until <= $3::text::timestamptz), greatest(day_from, nullif($2::text, "
-                 "'')::timestamptz), "
-                 "least(day_until, nullif($3::text, '')::timestamptz) FROM (SELECT station, day, done, "
-                 "day::timestamp AT "
-                 "TIME ZONE 'UTC' AS day_from, (day + 1)::timestamp AT TIME ZONE 'UTC' AS day_until FROM "
-                 "seamwright.station_day WHERE station = ANY ($1::int[])) AS d WHERE ($2::text = '' OR "
-                 "day_until > "
-                 "$2::text::timestamptz) AND ($3::text = '' OR day_from < $3::text::timestamptz) AND "
-                 "$4::text IS NOT NULL "
-                 "ORDER BY station, day")) {
-            const std::int64_t station = whole(row[0]);
-            if (yes(row[2])) {
-                whole_stations_.push_back(station);
-                whole_days_.emplace_back(row[1].c_str());
-            } else {
-                window_stations_.push_back(station);
-                window_from_.emplace_back(row[3].c_str());
-                window_until_.emplace_back(row[4].c_str());
-            }
-        }
+    static std::string in_time(const char* more) {
+        return fmt::format(
+            "station = ANY ($1::int[]) AND started IS NOT NULL AND ($2::text = '' OR started >= "
+            "$2::text::timestamptz) AND ($3::text = '' OR started < $3::text::timestamptz) AND ($4::text = "
+            "'' OR "
+            "type = $4::text) AND {}",
+            more);
     }
 
-    pqxx::result of_days(const std::string& columns, const char* table) {
-        return work_.exec_params(
-            fmt::format(
-                "SELECT t.station, t.day::timestamp AT TIME ZONE 'UTC', t.panel, t.region, t.type, {} FROM "
-                "unnest($1::int[], $2::date[]) AS w(station, day) JOIN seamwright.{} t USING (station, day) "
-                "WHERE "
-                "$3::text = '' OR t.type = $3::text",
-                columns, table),
-            array_of(whole_stations_), array_of(whole_days_), runs_.type_id);
-    }
-    pqxx::result of_windows(const char* select) {
-        return work_.exec_params(select, array_of(window_stations_), array_of(window_from_),
-                                 array_of(window_until_), runs_.type_id);
+    // The sums of whole days, of whole hours beside them, and of the rows beside those.
+    struct Summed {
+        pqxx::result rows;
+        decltype(Window::sums) sums;
+    };
+    std::vector<Summed> summed(const std::string& columns, const std::string& table,
+                               const std::string& select) {
+        const Windows hours = windows(spans_.hours), rest = windows(spans_.rest_of_hours);
+        std::vector<Summed> out;
+        out.push_back({work_.exec_params(
+                           fmt::format("SELECT station, day::timestamp AT TIME ZONE 'UTC', panel, region, "
+                                       "type, {} FROM seamwright.day_{} WHERE {}",
+                                       columns, table, kOfDays),
+                           array_of(ids_), spans_.first_day, spans_.end_day, runs_.type_id),
+                       Window::day});
+        const std::string of_hours = fmt::format(R"sql(
+SELECT x.station, x.hour, x.panel, x.region, x.type, {}
+FROM unnest($1::int[], $2::timestamptz[], $3::timestamptz[]) AS w(station, from_at, until_at)
+CROSS JOIN LATERAL (SELECT * FROM seamwright.hour_{} x WHERE x.station = w.station AND x.hour >= w.from_at AND
+    x.hour < w.until_at AND ($4::text = '' OR x.type = $4::text) OFFSET 0) AS x)sql",
+                                                 columns, table);
+        if (!spans_.hours.empty())
+            out.push_back(
+                {work_.exec_params(of_hours, hours.stations, hours.from, hours.until, runs_.type_id),
+                 Window::hour});
+        if (!spans_.rest_of_hours.empty())
+            out.push_back({work_.exec_params(select, rest.stations, rest.from, rest.until, runs_.type_id),
+                           Window::rows});
+        return out;
     }
 
     RegionTotals& totals(bool panel, const std::string& region) {
@@ -187,9 +224,8 @@ class Reader {
     }
 
     void counts() {
-        for (const auto& result :
-             {of_days("runs, passed, over_limit, used", "day_counts"), of_windows(fleet::counts_select())})
-            for (const auto& row : result) {
+        for (const Summed& part : summed("runs, passed, over_limit, used", "counts", fleet::counts_select()))
+            for (const auto& row : part.rows) {
                 RegionTotals& r = totals(yes(row[2]), row[3].c_str());
                 r.runs += count(row[5]);
                 r.passed += count(row[6]);
@@ -202,16 +238,15 @@ class Reader {
     void sums() {
         std::map<Key, std::vector<RowSums>> rows;
         std::optional<double> origin;
-        for (const auto& result : {of_days("key, n, sx, st, sxx, sxt, stt, pn, px, px0, pt, pt0, pxx, pxt, "
-                                           "ptx, ptt, ranges, lowest, highest, "
-                                           "first_x, first_t, last_x, last_t",
-                                           "day_sums"),
-                                   of_windows(fleet::sums_select())})
-            for (const auto& row : result) {
+        for (const Summed& part : summed(fleet::kSumColumns, "sums", fleet::sums_select()))
+            for (const auto& row : part.rows) {
                 const double day = day_of(row[1]);
                 if (!origin) origin = day;
-                rows[{yes(row[2]), row[3].c_str(), row[5].c_str(), row[0].c_str(), row[4].c_str()}].push_back(
-                    sums_of(row, 6).later_by(day - *origin));
+                const RowSums sums = sums_of(row, 6);
+                const Key key{yes(row[2]), row[3].c_str(), row[5].c_str(), row[0].c_str(), row[4].c_str()};
+                rows[key].push_back(sums.later_by(day - *origin));
+                windows_[{key.panel, key.region, key.key, {}, {}}].push_back(
+                    {whole(row[0]), key.type, row[1].c_str(), part.sums, sums.lowest, sums.highest});
             }
         for (auto& [key, days] : rows) {
             std::ranges::sort(days, {}, [](const RowSums& day) { return day.first.z(); });
@@ -222,15 +257,14 @@ class Reader {
     }
 
     void runs() {
-        std::map<std::int64_t, std::int64_t> cycles;
         std::set<std::pair<std::int64_t, std::int64_t>> setups;  // of a station
-        for (const auto& row :
-             ask(fmt::format("SELECT status, type, purpose, count(*), "
-                             "to_char(min(started), {0}), to_char(max(started), {0}), station, "
-                             "made_with FROM seamwright.run WHERE station = ANY ($1::int[]) AND {1} "
-                             "AND ($4::text = '' OR type = $4::text) GROUP BY status, type, purpose, "
-                             "station, made_with",
-                             kUtc, in_time("started")))) {
+        const std::string sql = fmt::format(R"sql(
+SELECT status, type, purpose, sum(runs), to_char(min(first), {0}), to_char(max(last), {0}), station, made_with
+FROM (SELECT status, type, purpose, station, made_with, runs, first, last FROM seamwright.day_runs WHERE {1}
+      UNION ALL SELECT x.status, x.type, x.purpose, x.station, x.made_with, 1, x.started, x.started FROM {2}) AS r
+GROUP BY status, type, purpose, station, made_with)sql",
+                                            kUtc, kOfDays, in_windows("run"));
+        for (const auto& row : ask(sql)) {
             const int n = count(row[3]);
             const auto purpose = static_cast<RunPurpose>(whole(row[2]));
             const auto status = run_status_from(row[0].c_str());
@@ -251,76 +285,81 @@ class Reader {
             }
         }
         production_.setups = setups.size();
-        const std::string production = fmt::format(
-            "station = ANY ($1::int[]) AND {} AND ($4::text = '' OR type = $4::text) AND purpose = 0 AND "
-            "status NOT IN "
-            "('cancelled', 'interrupted')",
-            in_time("started"));
-        for (const auto& row :
-             ask("SELECT cycle_ms, count(*) FROM seamwright.run WHERE cycle_ms IS NOT NULL AND " +
-                 production + " GROUP BY cycle_ms ORDER BY cycle_ms"))
-            cycles[whole(row[0])] = whole(row[1]);
-        cycle(cycles);
+        cycle();
         if (!totals_.cycle) return;
         // From start to start of the newest parts of each station.
-        for (const auto& row : ask(fmt::format("SELECT percentile_disc(0.5) WITHIN GROUP (ORDER BY gap) FROM "
-                                               "(SELECT extract(epoch FROM started - lag(started) "
-                                               "OVER (PARTITION BY station ORDER BY started))::float8 AS gap "
-                                               "FROM unnest($1::int[]) AS s(id) CROSS JOIN "
-                                               "LATERAL (SELECT station, started FROM seamwright.run WHERE "
-                                               "station = s.id AND {} ORDER BY started DESC LIMIT "
-                                               "{}) AS r) AS g",
-                                               production, kNewestParts)))
+        for (const auto& row : ask_rows(fmt::format(
+                 "SELECT percentile_disc(0.5) WITHIN GROUP (ORDER BY gap) FROM (SELECT extract(epoch FROM "
+                 "started - "
+                 "lag(started) OVER (PARTITION BY station ORDER BY started))::float8 AS gap FROM "
+                 "unnest($1::int[]) AS "
+                 "s(id) CROSS JOIN LATERAL (SELECT station, started FROM seamwright.run WHERE station = s.id "
+                 "AND {} "
+                 "ORDER BY started DESC NULLS LAST LIMIT {}) AS r) AS g",
+                 in_time("purpose = 0 AND status NOT IN ('cancelled', 'interrupted')"), kNewestParts)))
             totals_.cycle->between_s = number(row[0]);
     }
 
-    // By how many runs each number of milliseconds was taken.
-    void cycle(const std::map<std::int64_t, std::int64_t>& times) {
+    // By classes of three digits: mean, scatter and the longest are those of all runs, a quantile is the mean of its class.
+    void cycle() {
+        struct Class {
+            std::int64_t runs;
+            double mean_s;
+        };
+        std::vector<Class> classes;
         CycleTime c;
-        double sum = 0;
+        double sum = 0, squares = 0;
         std::int64_t n = 0;
-        for (const auto& [ms, runs] : times) {
-            n += runs;
-            sum += static_cast<double>(ms * runs);
+        const std::string sql = fmt::format(R"sql(
+SELECT class, sum(runs), sum(seconds), sum(squares), max(longest)
+FROM (SELECT class, runs, seconds, squares, longest FROM seamwright.day_cycles WHERE {}
+      UNION ALL SELECT {}, 1, x.cycle_ms / 1e3::float8, (x.cycle_ms / 1e3::float8) ^ 2, x.cycle_ms FROM {}
+      WHERE x.cycle_ms IS NOT NULL AND x.purpose = 0 AND x.status NOT IN ('cancelled', 'interrupted')) AS r
+GROUP BY class ORDER BY class)sql",
+                                            kOfDays, fleet::cycle_class("x.cycle_ms"), in_windows("run"));
+        for (const auto& row : ask(sql)) {
+            classes.push_back({whole(row[1]), number(row[2]) / static_cast<double>(whole(row[1]))});
+            n += whole(row[1]);
+            sum += number(row[2]);
+            squares += number(row[3]);
+            c.longest_s = static_cast<double>(whole(row[4])) / 1e3;
         }
         if (n == 0) return;
+        const auto runs = static_cast<double>(n);
         c.n = static_cast<int>(n);
-        c.mean_s = sum / static_cast<double>(n) / 1e3;
-        double squares = 0;
+        c.mean_s = sum / runs;
+        if (n > 1) c.s_s = std::sqrt(std::max(0.0, squares - runs * c.mean_s * c.mean_s) / (runs - 1));
         std::int64_t below = 0;
         const std::int64_t last = n - 1, middle = last / 2, high = (95 * last + 99) / 100;
-        for (const auto& [ms, runs] : times) {
-            const double s = static_cast<double>(ms) / 1e3;
-            squares += static_cast<double>(runs) * (s - c.mean_s) * (s - c.mean_s);
-            if (below <= middle && middle < below + runs) c.median_s = s;
-            if (below <= high && high < below + runs) c.p95_s = s;
-            below += runs;
-            c.longest_s = s;
+        for (const Class& of : classes) {
+            if (below <= middle && middle < below + of.runs) c.median_s = of.mean_s;
+            if (below <= high && high < below + of.runs) c.p95_s = of.mean_s;
+            below += of.runs;
         }
-        if (n > 1) c.s_s = std::sqrt(squares / static_cast<double>(n - 1));
         totals_.cycle = c;
     }
 
-    std::string of_production() const {
-        return fmt::format(
-            "production AND station = ANY ($1::int[]) AND {} AND ($4::text = '' OR type = $4::text)",
-            in_time("started"));
-    }
-
     void refusals() {
-        for (const auto& row : ask(fmt::format("SELECT panel, region, pattern, count(*), "
-                                               "to_char(max(started), {}), (array_agg(body ORDER BY started, "
-                                               "run))[1] FROM seamwright.refusal WHERE {} GROUP BY panel, "
-                                               "region, pattern ORDER BY min(started)",
-                                               kUtc, of_production())))
+        const std::string sql = fmt::format(R"sql(
+SELECT panel, region, pattern, sum(n), to_char(max(last), {0}), (array_agg(body ORDER BY first))[1]
+FROM (SELECT panel, region, pattern, refusals AS n, first, last, body FROM seamwright.day_refusals WHERE {1}
+      UNION ALL SELECT x.panel, x.region, x.pattern, 1, x.started, x.started, x.body FROM {2} WHERE x.production) AS r
+GROUP BY panel, region, pattern ORDER BY min(first))sql",
+                                            kUtc, kOfDays, in_windows("refusal"));
+        for (const auto& row : ask(sql))
             totals(yes(row[0]), row[1].c_str())
                 .refusals.push_back(
                     {row[2].c_str(), text_from_stored(row[5].c_str()), count(row[3]), row[4].c_str()});
     }
 
     void unmeasured() {
-        for (const auto& row : ask("SELECT spot, status, count(*) FROM seamwright.unmeasured WHERE " +
-                                   of_production() + " GROUP BY spot, status ORDER BY min(started)"))
+        const std::string sql = fmt::format(R"sql(
+SELECT spot, status, sum(n)
+FROM (SELECT spot, status, spots AS n, first FROM seamwright.day_unmeasured WHERE {}
+      UNION ALL SELECT x.spot, x.status, 1, x.started FROM {} WHERE x.production) AS r
+GROUP BY spot, status ORDER BY min(first))sql",
+                                            kOfDays, in_windows("unmeasured"));
+        for (const auto& row : ask(sql))
             for (const SpotStatus s :
                  {SpotStatus::not_measured, SpotStatus::damaged_frame, SpotStatus::no_stripe,
                   SpotStatus::no_calibration, SpotStatus::no_feature})
@@ -339,8 +378,8 @@ class Reader {
     }
 
     void newest_of(bool panel, const std::string& region, std::map<std::int64_t, ProductionRun>& runs) {
-        for (const auto& row :
-             ask(fmt::format(
+        for (const auto& row : ask_rows(
+                 fmt::format(
                      "SELECT r.id, r.station, r.number, r.part, r.type, to_char(r.started, {0}), "
                      "coalesce(to_char(r.finished, {0}), ''), r.push, r.status, s.passed, s.numbers, s.vals, "
                      "CASE WHEN s.panel THEN to_jsonb(m.keys) END FROM (SELECT * FROM seamwright.result "
@@ -348,7 +387,7 @@ class Reader {
                      "$5 AND region = $6 AND used AND {1} ORDER BY started DESC, run DESC LIMIT {2}) AS s "
                      "JOIN "
                      "seamwright.run r ON r.id = s.run JOIN seamwright.measurands m ON m.id = s.measurands",
-                     kUtc, of_production(), kNewestParts),
+                     kUtc, in_time("production"), kNewestParts),
                  panel, region)) {
             ProductionRun& run = runs[whole(row[0])];
             RunValues& v = run.values;
@@ -396,18 +435,55 @@ class Reader {
         return p;
     }
 
+    // Only where something lies beyond: of days and hours by search in the hours' sorted values, of the rest in the rows.
     Expected<int> beyond(const std::string& id, bool panel, const std::string& key,
                          const ProcessLimits& limits) {
-        const auto bound = [](const std::optional<double>& limit, const char* none) {
-            return limit ? fmt::format("{}", *limit) : std::string(none);
-        };
-        const auto rows = ask(
-            "SELECT count(*) FROM seamwright.result s JOIN seamwright.measurands m ON m.id = s.measurands "
-            "CROSS JOIN LATERAL (SELECT s.vals[array_position(m.keys, $7)] AS x) AS v WHERE panel = $5 AND "
-            "region = $6 AND used AND (x < $8::float8 OR x > $9::float8) AND " +
-                of_production(),
-            panel, id, key, bound(limits.lower, "-Infinity"), bound(limits.upper, "Infinity"));
-        return count(rows[0][0]);
+        const double lower = limits.lower.value_or(-kInfinity), upper = limits.upper.value_or(kInfinity);
+        std::vector<std::int64_t> stations, row_stations;
+        std::vector<std::string> types, from, until, row_types, row_from, row_until;
+        for (const Window& w : windows_[{panel, id, key, {}, {}}]) {
+            if (w.lowest >= lower && w.highest <= upper) continue;
+            const bool rows = w.sums == Window::rows;
+            (rows ? row_stations : stations).push_back(w.station);
+            (rows ? row_types : types).push_back(w.type);
+            (rows ? row_from : from).push_back(w.from);
+            (rows ? row_until : until)
+                .push_back(rows                     ? end_of(w)
+                           : w.sums == Window::hour ? "1 hour"
+                                                    : "1 day");
+        }
+        // width_bucket counts what is at most its number.
+        const auto in_hours = work_.exec_params(
+            R"sql(
+SELECT coalesce(sum(width_bucket($8::float8, h.vals) + cardinality(h.vals) - width_bucket($9::float8, h.vals)), 0)
+FROM unnest($1::int[], $2::text[], $3::timestamptz[], $4::interval[]) AS w(station, type, from_at, long)
+CROSS JOIN LATERAL (SELECT * FROM seamwright.hour_sums h WHERE h.station = w.station AND h.panel = $5 AND h.region = $6 AND
+    h.type = w.type AND h.key = $7 AND h.hour >= w.from_at AND h.hour < w.from_at + w.long OFFSET 0) AS h
+WHERE h.lowest <= $8::float8 OR h.highest > $9::float8)sql",
+            array_of(stations), array_of(types), array_of(from), array_of(until), panel, id, key,
+            bound(std::nextafter(lower, -kInfinity)), bound(upper));
+        const auto in_rows = work_.exec_params(
+            R"sql(
+SELECT count(*) FROM unnest($1::int[], $2::text[], $3::timestamptz[], $4::timestamptz[]) AS w(station, type, from_at, until_at)
+CROSS JOIN LATERAL (SELECT * FROM seamwright.result s WHERE s.station = w.station AND s.type = w.type AND
+    s.started >= w.from_at AND s.started < w.until_at AND s.panel = $5 AND s.region = $6 AND s.used AND s.production
+    OFFSET 0) AS s
+JOIN seamwright.measurands m ON m.id = s.measurands
+CROSS JOIN LATERAL (SELECT s.vals[array_position(m.keys, $7)] AS x) AS v
+WHERE x < $8::float8 OR x > $9::float8)sql",
+            array_of(row_stations), array_of(row_types), array_of(row_from), array_of(row_until), panel, id,
+            key, bound(lower), bound(upper));
+        return count(in_hours[0][0]) + count(in_rows[0][0]);
+    }
+    static std::string bound(double limit) {
+        return std::isfinite(limit) ? fmt::format("{}", limit) : limit > 0 ? "Infinity" : "-Infinity";
+    }
+    // Of a window that is no whole hour.
+    std::string end_of(const Window& w) const {
+        const auto from = utc_milliseconds(w.from.substr(0, 10) + "T" + w.from.substr(11, 8) + "Z");
+        for (const fleet::Span& span : spans_.rest_of_hours)
+            if (from && span.from / 1000 == *from / 1000) return fleet::time_text(span.until);
+        return w.from;
     }
 
     pqxx::transaction_base& work_;
@@ -417,8 +493,9 @@ class Reader {
     Production production_;
     ProductionTotals totals_;
     std::map<std::int64_t, std::size_t> place_;  // in Production::files, by the station's number
-    std::vector<std::int64_t> ids_, whole_stations_, window_stations_;
-    std::vector<std::string> whole_days_, window_from_, window_until_;
+    std::vector<std::int64_t> ids_;
+    fleet::Spans spans_;
+    std::map<Key, std::vector<Window>> windows_;  // by panel, region and key alone
 };
 
 }  // namespace

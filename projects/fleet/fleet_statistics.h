@@ -3,8 +3,12 @@
 // (projects/statistics/statistics.h). The values follow each other within a station: what scatters from part to part, correlates and
 // charts is never one station against another, except in the charts, which show the newest parts of all in the order of time.
 //
-// Of closed days the sums are there (fleet_schema.h); those of today, and of days that --since and --until cut, are made from the
-// values. Nothing is written, so a user who may only read is enough.
+// From sums that are kept up to date while stations publish (sums.h), of days, of hours where --since and --until cut a day, and of
+// the rows where they cut an hour: numbers of parts, means, scatter, capability, correlation, trends, refusals, spots that were not
+// measured, mean, scatter and longest of the cycle times. They are those of all values, to rounding. What lies beyond limits is
+// counted exactly. Median and 95 % of the cycle times are to three digits. Of the newest kNewestParts alone: charts, EWMA,
+// quantiles, the test for normality, the time from part to part. A value below 1e-100 counts as 0, one above 1e100 not at all.
+// Nothing is written, so a user who may only read is enough.
 
 #include <string>
 #include <vector>

@@ -68,7 +68,6 @@ Expected<PublishReport> publish_file(ProjectFile& file, const FleetTarget& targe
         SEAM_OK(file.published(made.gone));
         if (options.progress) options.progress(report.runs, all);
     }
-    SEAM_OK(store.close_days(report.station));
     SEAM_TRY(report.waiting, file.queued());
     return report;
 }
@@ -149,10 +148,7 @@ struct FleetPublisher::Impl {
             SEAM_TRY(auto connected, Store::connect(target));
             store.emplace(std::move(connected));
         }
-        SEAM_TRY(auto taken, store->take(station, messages.setup(), batch));
-        // Sums of days that are over: only to be quicker, later.
-        (void)store->close_days(station);
-        return taken;
+        return store->take(station, messages.setup(), batch);
     }
 
     // What was confirmed leaves the outbox, what is queued goes out.

@@ -4,6 +4,7 @@
 
 #include "projects/file/chain/sha256.h"
 #include "projects/fleet/fleet_schema.h"
+#include "projects/fleet/sums.h"
 
 namespace seamwright::fleet {
 namespace {
@@ -59,17 +60,19 @@ FROM jsonb_array_elements($1::jsonb) AS m
 JOIN seamwright.run r ON r.uid = decode(m ->> 'id', 'hex') AND r.id = ANY ($2::bigint[])
 CROSS JOIN LATERAL jsonb_to_recordset(m -> 'unmeasured') AS x(position int, spot text, status text))sql";
 
-constexpr const char* kDays = R"sql(
-INSERT INTO seamwright.station_day (station, day, done)
-SELECT DISTINCT station, (started AT TIME ZONE 'UTC')::date, false FROM seamwright.run
-WHERE id = ANY ($1::bigint[]) AND started IS NOT NULL
-ON CONFLICT (station, day) DO UPDATE SET done = false)sql";
-
-// The station's number; until the transaction ends nobody else publishes for it or closes its days.
-int lock_station(pqxx::transaction_base& work, const std::string& name) {
+// The station's number; until the transaction ends nobody else publishes for it, or for another one that has some of these runs.
+int lock_station(pqxx::transaction_base& work, const std::string& name, const std::string& messages) {
     work.exec_params("INSERT INTO seamwright.station (name) VALUES ($1) ON CONFLICT (name) DO NOTHING", name);
-    return work.exec_params1("SELECT id FROM seamwright.station WHERE name = $1 FOR NO KEY UPDATE", name)[0]
-        .as<int>();
+    // In the order of their numbers, so that two never wait for each other.
+    const auto rows = work.exec_params(
+        "SELECT id, name = $1 FROM seamwright.station WHERE name = $1 OR id IN (SELECT station FROM "
+        "seamwright.run WHERE uid IN (SELECT decode(m ->> 'id', 'hex') FROM jsonb_array_elements($2::jsonb) "
+        "AS m)) "
+        "ORDER BY id FOR NO KEY UPDATE",
+        name, messages);
+    for (const auto& row : rows)
+        if (row[1].as<bool>()) return row[0].as<int>();
+    return 0;  // never: the row is there
 }
 
 int setup_of(pqxx::transaction_base& work, const std::string& setup) {
@@ -82,68 +85,63 @@ int setup_of(pqxx::transaction_base& work, const std::string& setup) {
         .as<int>();
 }
 
-void take_all(pqxx::connection& connection, const std::string& station, const std::string& setup,
-              std::span<const Outgoing> batch) {
+// Error: no fleet, or one of another version than this program's.
+Expected<void> check_version(pqxx::transaction_base& work, const FleetTarget& target) {
+    const auto version = schema_version(work);
+    if (!version)
+        return device_error("the database has no fleet", target.name(),
+                            "make it: seamwright fleet init --to URL");
+    if (*version > fleet_schema_version())
+        return device_error(Text("the fleet's schema has version {}, this program knows up to {}", *version,
+                                 fleet_schema_version()),
+                            target.name(), "use a newer Seamwright");
+    if (*version < fleet_schema_version())
+        return device_error(Text("the fleet's schema has version {}, this program needs {}", *version,
+                                 fleet_schema_version()),
+                            target.name(), "bring it up to date: seamwright fleet init --to URL");
+    return {};
+}
+
+Expected<void> take_all(pqxx::connection& connection, const FleetTarget& target, const std::string& station,
+                        const std::string& setup, std::span<const Outgoing> batch) {
     std::string messages = "[";
     for (const Outgoing& out : batch) messages += (messages.size() > 1 ? "," : "") + out.message;
     messages += "]";
     pqxx::work work(connection);
-    const int station_id = lock_station(work, station);
+    SEAM_OK(check_version(work, target));  // it may have become another one since the connection was made
+    const int station_id = lock_station(work, station, messages);
     const int setup_id = setup_of(work, setup);
     std::vector<std::int64_t> changed;
     for (const auto& row : work.exec_params(kRuns, messages, station_id, setup_id))
         changed.push_back(row[0].as<std::int64_t>());
     if (!changed.empty()) {
         const std::string ids = array_of(changed);
+        // A run that another station's copy of the file brought in the meantime.
+        work.exec_params(
+            "SELECT id FROM seamwright.station WHERE id IN (SELECT station FROM seamwright.run WHERE id = "
+            "ANY "
+            "($1::bigint[])) ORDER BY id FOR NO KEY UPDATE",
+            ids);
         for (const char* table : {"result", "refusal", "unmeasured"})
             work.exec_params(fmt::format("DELETE FROM seamwright.{} WHERE run = ANY ($1::bigint[])", table),
                              ids);
         work.exec_params(kKeys, messages);
         for (const char* insert : {kResults, kRefusals, kUnmeasured}) work.exec_params(insert, messages, ids);
-        work.exec_params(kDays, ids);
+        update_sums(work, ids);
     }
     work.exec_params("UPDATE seamwright.station SET published = now() WHERE id = $1", station_id);
     work.commit();
+    return {};
 }
 
 }  // namespace
-
-std::string array_of(const std::vector<std::int64_t>& numbers) {
-    std::string out = "{";
-    for (const std::int64_t n : numbers) out += (out.size() > 1 ? "," : "") + std::to_string(n);
-    return out + "}";
-}
-
-std::string array_of(const std::vector<std::string>& texts) {
-    std::string out = "{";
-    for (const std::string& text : texts) {
-        out += out.size() > 1 ? ",\"" : "\"";
-        for (const char c : text) {
-            if (c == '"' || c == '\\') out += '\\';
-            out += c;
-        }
-        out += '"';
-    }
-    return out + "}";
-}
 
 Expected<Store> Store::connect(const FleetTarget& target) {
     SEAM_TRY(auto connection, fleet::connect(target));
     return guarded(target, [&]() -> Expected<Store> {
         {
             pqxx::nontransaction work(*connection);
-            const auto version = schema_version(work);
-            if (!version)
-                return device_error("the database has no fleet", target.name(),
-                                    "make it: seamwright fleet init --to URL");
-            if (*version > fleet_schema_version())
-                return device_error(Text("the fleet's schema has version {}, this program knows up to {}",
-                                         *version, fleet_schema_version()),
-                                    target.name(), "use a newer Seamwright");
-            if (*version < fleet_schema_version())
-                return device_error(Text("the fleet's schema has version {}, this program needs {}", *version,
-                                         fleet_schema_version()),
-                                    target.name(), "bring it up to date: seamwright fleet init --to URL");
+            SEAM_OK(check_version(work, target));
             work.exec("SET TIME ZONE 'UTC'");
             work.exec("SET extra_float_digits = 1");
         }
@@ -162,7 +160,8 @@ Expected<Store::Taken> Store::take(const std::string& station, const std::string
             parts.pop_back();
             if (from == to) continue;
             try {
-                take_all(*connection_, station, setup, std::span(batch).subspan(from, to - from));
+                SEAM_OK(take_all(*connection_, target_, station, setup,
+                                 std::span(batch).subspan(from, to - from)));
                 for (std::size_t i = from; i < to; ++i) taken.runs.push_back(batch[i].run);
             } catch (const std::exception& e) {
                 if (!refuses_data(e)) throw;
@@ -176,80 +175,6 @@ Expected<Store::Taken> Store::take(const std::string& station, const std::string
             }
         }
         return std::move(taken);
-    });
-}
-
-const char* counts_select() {
-    return R"sql(
-SELECT w.station, w.from_at, s.panel, s.region, s.type, count(*), count(*) FILTER (WHERE s.passed),
-    count(*) FILTER (WHERE NOT s.passed AND s.status = 'over_limit'), count(*) FILTER (WHERE s.used)
-FROM unnest($1::int[], $2::timestamptz[], $3::timestamptz[]) AS w(station, from_at, until_at)
-JOIN seamwright.result s ON s.station = w.station AND s.started >= w.from_at AND s.started < w.until_at
-WHERE s.production AND ($4::text = '' OR s.type = $4::text)
-GROUP BY w.station, w.from_at, s.panel, s.region, s.type)sql";
-}
-
-const char* sums_select() {
-    return R"sql(
-SELECT station, from_at, panel, region, type, key, count(*)::float8, sum(x), sum(t), sum(x * x), sum(x * t), sum(t * t),
-    count(px)::float8, coalesce(sum(x) FILTER (WHERE px IS NOT NULL), 0), coalesce(sum(px), 0),
-    coalesce(sum(t) FILTER (WHERE px IS NOT NULL), 0), coalesce(sum(pt), 0), coalesce(sum(x * px), 0),
-    coalesce(sum(x * pt), 0), coalesce(sum(t * px), 0), coalesce(sum(t * pt), 0), coalesce(sum(abs(x - px)), 0), min(x),
-    max(x), sum(x) FILTER (WHERE px IS NULL), min(t), sum(x) FILTER (WHERE last), max(t)
-FROM (
-    SELECT station, from_at, panel, region, type, key, x, t, lag(x) OVER row AS px, lag(t) OVER row AS pt,
-        lead(x) OVER row IS NULL AS last
-    FROM (
-        SELECT w.station, w.from_at, s.panel, s.region, s.type, u.key, u.x, s.run,
-            extract(epoch FROM s.started - date_trunc('day', w.from_at))::float8 / 86400 AS t
-        FROM unnest($1::int[], $2::timestamptz[], $3::timestamptz[]) AS w(station, from_at, until_at)
-        JOIN seamwright.result s ON s.station = w.station AND s.started >= w.from_at AND s.started < w.until_at
-        JOIN seamwright.measurands m ON m.id = s.measurands
-        CROSS JOIN LATERAL unnest(s.vals, m.keys) AS u(x, key)
-        WHERE s.production AND s.used AND u.x IS NOT NULL AND ($4::text = '' OR s.type = $4::text)
-    ) AS one
-    WINDOW row AS (PARTITION BY station, from_at, panel, region, type, key ORDER BY t, run)
-) AS two
-GROUP BY station, from_at, panel, region, type, key)sql";
-}
-
-Expected<void> Store::close_days(const std::string& station) {
-    return guarded(target_, [&]() -> Expected<void> {
-        std::vector<std::string> days;
-        {
-            pqxx::work work(*connection_);
-            for (const auto& row :
-                 work.exec_params("SELECT day FROM seamwright.station_day JOIN seamwright.station ON station "
-                                  "= id WHERE name = $1 AND NOT "
-                                  "done AND day < (SELECT max(day) FROM seamwright.station_day o WHERE "
-                                  "o.station = station_day.station) "
-                                  "ORDER BY day",
-                                  station))
-                days.push_back(row[0].c_str());
-        }
-        for (const std::string& day : days) {
-            pqxx::work work(*connection_);
-            const int id = lock_station(work, station);
-            for (const char* table : {"day_counts", "day_sums"})
-                work.exec_params(
-                    fmt::format("DELETE FROM seamwright.{} WHERE station = $1 AND day = $2::date", table), id,
-                    day);
-            const std::string stations = array_of(std::vector<std::int64_t>{id});
-            const std::string from = fmt::format("{{\"{} 00:00:00+00\"}}", day);
-            const std::string until =
-                work.exec_params1("SELECT ARRAY[(($1::date + 1)::timestamp AT TIME ZONE 'UTC')]::text",
-                                  day)[0]
-                    .c_str();
-            work.exec_params(std::string("INSERT INTO seamwright.day_counts ") + counts_select(), stations,
-                             from, until, "");
-            work.exec_params(std::string("INSERT INTO seamwright.day_sums ") + sums_select(), stations, from,
-                             until, "");
-            work.exec_params(
-                "UPDATE seamwright.station_day SET done = true WHERE station = $1 AND day = $2::date", id,
-                day);
-            work.commit();
-        }
-        return {};
     });
 }
 

@@ -20,15 +20,13 @@ class Store {
     // Error (device): no server, no schema, a newer one.
     static Expected<Store> connect(const FleetTarget& target);
 
-    // Whether the database has them: confirmed when it answers. Refused data are `refused` with their Errors, the others taken.
+    // With their sums (sums.h), in one transaction. Whether the database has them: confirmed when it answers. Refused data are `refused` with their Errors, the others taken.
     struct Taken {
         std::vector<QueuedRun> runs;
         std::vector<std::pair<std::int64_t, Error>> refused;
     };
     Expected<Taken> take(const std::string& station, const std::string& setup,
                          const std::vector<Outgoing>& batch);
-    // The sums of the station's days that are over.
-    Expected<void> close_days(const std::string& station);
 
     pqxx::connection& connection() { return *connection_; }
     const FleetTarget& target() const { return target_; }
@@ -39,14 +37,5 @@ class Store {
     FleetTarget target_;
     std::unique_ptr<pqxx::connection> connection_;
 };
-
-// The statements of day_counts and day_sums for windows of time: $1 stations, $2 from, $3 until, $4 a part type or ''. A window lies
-// within a day; the times of its sums count from the day's beginning.
-const char* counts_select();
-const char* sums_select();
-// "{1,2,3}"
-std::string array_of(const std::vector<std::int64_t>& numbers);
-// Of texts: "{"a","b"}", quoted.
-std::string array_of(const std::vector<std::string>& texts);
 
 }  // namespace seamwright::fleet

@@ -44,4 +44,15 @@ const RegionModes* modes_of(const Project& project, const std::string& region_id
     return nullptr;
 }
 
+bool has_password(const std::string& address) {
+    const auto begin = address.find("://");
+    if (begin == std::string::npos) return address.find("password") != std::string::npos;
+    const std::string rest = address.substr(begin + 3);
+    const auto query = rest.find('?');
+    const std::string authority = rest.substr(0, std::min(rest.find('/'), query));
+    const auto at = authority.rfind('@');
+    return (at != std::string::npos && authority.substr(0, at).find(':') != std::string::npos) ||
+           (query != std::string::npos && rest.find("password", query) != std::string::npos);
+}
+
 }  // namespace seamwright

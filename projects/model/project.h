@@ -30,6 +30,7 @@
 #include "projects/model/drift_watch.h"
 #include "projects/model/elastic_modes.h"
 #include "projects/model/fixture.h"
+#include "projects/model/fleet_link.h"
 #include "projects/model/panel_job.h"
 
 namespace seamwright {
@@ -263,6 +264,7 @@ struct Project {
     std::vector<RegionModes> elastic;
     std::optional<DriftWatch> drift;  // no part of a run's setup: the run says what acted
     std::optional<Fixture> fixture;   // no part of a run's setup: it measures nothing
+    std::optional<FleetLink> fleet;   // no part of a run's setup: it measures nothing
 };
 
 // A region's modes; nullptr: none were learnt.

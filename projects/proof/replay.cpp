@@ -248,6 +248,11 @@ Expected<ReplayResult> replay(const std::filesystem::path& path, const ReplayOpt
         if (runs.empty()) return input_error(Text("there is no run {}", options.run), path.string());
     }
 
+    std::vector<RunSummary> mine;
+    for (std::size_t i = 0; i < runs.size(); ++i)
+        if (options.portion.holds(i)) mine.push_back(std::move(runs[i]));
+    runs = std::move(mine);
+
     // Runs are handed out one by one; each leaves its part at its own place, so the order of work does not
     // show.
     std::vector<Part> parts(runs.size());

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "projects/batch/parts.h"
 #include "projects/file/project_file.h"
 
 namespace seamwright {
@@ -15,6 +16,7 @@ namespace seamwright {
 struct ReplayOptions {
     std::int64_t run = 0;  // 0 = all
     int jobs = 1;          // threads; the outcome does not depend on it
+    Portion portion;       // of the runs, by their place among all
     std::stop_token cancel;
     std::function<void(int done, int total)> progress;  // runs; called on one thread at a time
 };

@@ -147,6 +147,7 @@ Expected<Project> mirrored_project(const Project& project, const MirrorPlane& pl
                            Text("panel job {}", project.panel_jobs.front().id),
                            "teach the panel job of the other side; mirror the project without it");
     Project out = project;
+    if (out.fleet) out.fleet->station.clear();  // the other door's, not this one's
     const Eigen::Matrix3d sensor_mirror = Eigen::Vector3d(-1, 1, 1).asDiagonal();
 
     out.part.base_from_workobject =

@@ -92,6 +92,39 @@ TEST_F(FleetCommand, WhatIsWrongIsSaid) {
                 HasSubstr("does not exist"));
 }
 
+TEST_F(FleetCommand, AFleetThatTheProjectNamesNeedsNoUrl) {
+    EXPECT_THAT(run({"fleet", "publish", file.string()}, 2).err, HasSubstr("names no fleet"));
+    EXPECT_THAT(run({"service", file.string(), "--fleet"}, 2).err, HasSubstr("names no fleet"));
+    EXPECT_THAT(run({"fleet", "set", file.string(), "--to", server->uri()}, 2).err,
+                HasSubstr("no place for a password"));
+    EXPECT_THAT(run({"fleet", "set", file.string(), "--to", "postgresql://seam@h/d?password=x"}, 2).err,
+                HasSubstr("no place for a password"));
+    EXPECT_EQ(run_program({"fleet", "set", file.string(), "--station", "line 2"}, folder).exit_code, 2);
+    const std::string uri = server->uri("fleet", "");
+    EXPECT_EQ(answer({"fleet", "set", file.string(), "--to", uri, "--station", "line 2"})["to"], uri);
+    EXPECT_EQ(answer({"fleet", "set", file.string()})["station"], "line 2");
+    EXPECT_THAT(slurp(file), Not(HasSubstr(PostgresServer::kPassword)));
+    ::setenv("PGPASSWORD", PostgresServer::kPassword, 1);
+    run({"fleet", "init", "--to", uri}, 0);
+    const json published = answer({"fleet", "publish", file.string()});
+    EXPECT_EQ(published["published"], 15);
+    EXPECT_EQ(published["station"], "line 2");
+    ::unsetenv("PGPASSWORD");
+    EXPECT_THAT(run({"service", file.string(), "--fleet"}, 0).out, HasSubstr(" \"--fleet\"\n"));
+    // As a document too: neither out of it nor into it comes a password.
+    const auto document = folder / "door.json";
+    run({"export", file.string(), "--out", document.string()}, 0);
+    std::string text = slurp(document);
+    ASSERT_THAT(text, HasSubstr("line 2"));
+    for (auto at = text.find("//seam@"); at != std::string::npos; at = text.find("//seam@"))
+        text.replace(at, 7, "//seam:secret@");
+    std::ofstream(document) << text;
+    EXPECT_THAT(run({"import", (folder / "again.seam").string(), "--from", document.string()}, 2).err,
+                HasSubstr("holds a password"));
+    EXPECT_EQ(answer({"fleet", "set", file.string(), "--remove"})["to"], "");
+    EXPECT_THAT(run({"fleet", "publish", file.string()}, 2).err, HasSubstr("names no fleet"));
+}
+
 // As long as it runs, it answers; a signal ends it.
 TEST_F(FleetCommand, ThePageOfAllStations) {
     const std::string uri = server->uri();

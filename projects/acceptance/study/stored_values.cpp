@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "projects/acceptance/study/live_study.h"
 #include "projects/measure/measure.h"
@@ -139,35 +140,107 @@ void name_devices(StudySource& source, const Project& setup, const Spot& spot) {
     }
 }
 
-Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& region_id) {
-    SEAM_TRY(const auto project, file.load());
-    return stored_values(file, project, region_id);
-}
+namespace {
 
-Expected<StoredStudy> stored_values(const ProjectFile& file, const Project& project,
-                                    const std::string& region_id) {
-    if (project.regions.empty()) return input_error("the project has no region", file.path().string());
+std::string ids_of(const Project& project) {
     std::string ids;
     for (const Region& r : project.regions) ids += (ids.empty() ? "" : ", ") + r.id;
+    return ids;
+}
+
+Expected<std::string> region_of(const ProjectFile& file, const Project& project,
+                                const std::string& region_id) {
+    if (project.regions.empty()) return input_error("the project has no region", file.path().string());
     if (region_id.empty() && project.regions.size() > 1)
         return usage_error(Text("the project has {} regions", project.regions.size()), file.path().string(),
-                           Text("name one with --region: {}", ids));
-    const std::string id = region_id.empty() ? project.regions.front().id : region_id;
-    SEAM_TRY(auto summaries, file.runs());
-    SEAM_TRY(auto evidence, file.evidence());
+                           Text("name one with --region: {}", ids_of(project)));
+    return region_id.empty() ? project.regions.front().id : region_id;
+}
+
+// What a stored run says of the region.
+struct FoundRun {
+    bool there = false;  // the region is in it; else it is another region's, or a panel's
+    bool used = false;   // with a correction that the gate let pass
+    Pose found = Pose::Identity();
+};
+
+// The displacements of the newest known-shift proof, by run.
+std::map<std::int64_t, Pose> known_shifts(const std::vector<Evidence>& evidence) {
     std::map<std::int64_t, Pose> known;
     for (const Evidence& e : evidence)
         if (const auto* proof = std::get_if<KnownShift>(&e.what)) {
             known.clear();
             for (const ShiftTest& test : proof->tests) known[test.run] = test.workobject_from_movedworkobject;
         }
+    return known;
+}
+
+bool of_older_proof(const RunSummary& run, const std::map<std::int64_t, Pose>& known) {
+    return run.part_id.starts_with(kKnownShiftPrefix) && !known.contains(run.number);
+}
+
+// Of each run but those of older proofs.
+Expected<std::vector<FoundRun>> found_runs(const ProjectFile& file, const std::vector<RunSummary>& summaries,
+                                           const std::map<std::int64_t, Pose>& known, const std::string& id,
+                                           Parts* parts) {
+    std::vector<FoundRun> found(summaries.size());
+    std::vector<std::size_t> mine(summaries.size());
+    std::iota(mine.begin(), mine.end(), std::size_t{0});
+    if (parts) mine = parts->begin(summaries.size());
+    for (const std::size_t i : mine) {
+        if (of_older_proof(summaries[i], known)) continue;
+        SEAM_TRY(auto run, file.load_run(summaries[i].number, false));
+        const auto record = std::ranges::find(run.regions, id, &RegionRecord::region_id);
+        if (record == run.regions.end()) continue;
+        found[i].there = true;
+        found[i].used =
+            record->gate_passed && record->correction && record->correction->status == CorrectionStatus::ok;
+        if (found[i].used) found[i].found = record->correction->displacement.workobject_from_movedworkobject;
+    }
+    if (parts) {
+        parts->end(
+            [&](PartValue& part, std::size_t i) {
+                part(found[i].there);
+                part(found[i].used);
+                part.matrix(found[i].found.matrix());
+            },
+            0);
+        SEAM_OK(parts->check());
+    }
+    return found;
+}
+
+}  // namespace
+
+Expected<void> stored_values_part(const ProjectFile& file, const std::string& region_id, Parts& part) {
+    SEAM_TRY(const auto project, file.load());
+    SEAM_TRY(const auto id, region_of(file, project, region_id));
+    SEAM_TRY(const auto summaries, file.runs());
+    SEAM_TRY(const auto evidence, file.evidence());
+    return found_runs(file, summaries, known_shifts(evidence), id, &part).map([](const auto&) {});
+}
+
+Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& region_id, Parts* parts) {
+    SEAM_TRY(const auto project, file.load());
+    return stored_values(file, project, region_id, parts);
+}
+
+Expected<StoredStudy> stored_values(const ProjectFile& file, const Project& project,
+                                    const std::string& region_id, Parts* parts) {
+    SEAM_TRY(const auto id, region_of(file, project, region_id));
+    const std::string ids = ids_of(project);
+    SEAM_TRY(auto summaries, file.runs());
+    SEAM_TRY(auto evidence, file.evidence());
+    const std::map<std::int64_t, Pose> known = known_shifts(evidence);
+    SEAM_TRY(const auto found, found_runs(file, summaries, known, id, parts));
 
     const std::map<std::string, RehungPart> rehung = rehung_parts(evidence);
     StoredStudy study;
     StudySource& source = study.source;
     std::vector<UsedRun> used;
     int refused = 0, of_older_proofs = 0;
-    for (const RunSummary& summary : summaries) {
+    for (std::size_t i = 0; i < summaries.size(); ++i) {
+        const RunSummary& summary = summaries[i];
         UsedRun r;
         r.part = summary.part_id;
         r.number = static_cast<long>(summary.number);
@@ -189,16 +262,12 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const Project& proj
             r.part = at->second.part;
             r.rehang = at->second.rehang;
         }
-        SEAM_TRY(auto run, file.load_run(summary.number, false));
-        const auto record = std::find_if(run.regions.begin(), run.regions.end(),
-                                         [&](const RegionRecord& region) { return region.region_id == id; });
-        if (record == run.regions.end()) continue;  // another region's, or a panel's
-        if (!record->gate_passed || !record->correction ||
-            record->correction->status != CorrectionStatus::ok) {
+        if (!found[i].there) continue;
+        if (!found[i].used) {
             ++refused;
             continue;
         }
-        r.found = record->correction->displacement.workobject_from_movedworkobject;
+        r.found = found[i].found;
         used.push_back(std::move(r));
     }
     const bool known_region = std::any_of(project.regions.begin(), project.regions.end(),
@@ -245,11 +314,11 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const Project& proj
             study.values.type3.push_back(v);
         }
     }
-    std::map<std::string, Displacement> parts;  // as last found
+    std::map<std::string, Displacement> last_found;  // by part
     for (const UsedRun& r : used)
-        if (r.kind == RunKind::part) parts[r.part].workobject_from_movedworkobject = r.found;
+        if (r.kind == RunKind::part) last_found[r.part].workobject_from_movedworkobject = r.found;
     std::vector<Displacement> places;
-    for (const auto& [part, place] : parts) places.push_back(place);
+    for (const auto& [part, place] : last_found) places.push_back(place);
     source.forecast = forecast_at(setup, *region, *worst, places);
     source.unmoved_part = study.reference_part;
     source.offset.emplace(OffsetOfStudy{id, worst->direction, {}});

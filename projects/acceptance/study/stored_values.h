@@ -20,6 +20,7 @@
 #include <string>
 
 #include "projects/acceptance/study/studies.h"
+#include "projects/batch/parts.h"
 #include "projects/file/project_file.h"
 
 namespace seamwright {
@@ -32,10 +33,14 @@ struct StoredStudy {
 
 // `region` may be empty where the project has one. Error (usage, input): an unknown region, several and none
 // named, no usable run; (file): the file.
-Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& region);
+// `parts`: what others read of the runs (stored_values_part), collected.
+Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& region,
+                                    Parts* parts = nullptr);
 // The same of a project that is not saved yet.
 Expected<StoredStudy> stored_values(const ProjectFile& file, const Project& project,
-                                    const std::string& region);
+                                    const std::string& region, Parts* parts = nullptr);
+// What one of several processes reads of the runs, into its part.
+Expected<void> stored_values_part(const ProjectFile& file, const std::string& region, Parts& part);
 
 // What is predicted before anything was measured, of the worst of the region's path points and directions; EV of
 // parts that lie as taught. Error (input): no calibrated spot, under-determined.

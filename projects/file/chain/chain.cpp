@@ -26,15 +26,14 @@ struct ChainedTable {
     const char* table;
     std::string_view kind;
 };
-constexpr std::array<const char*, 14> kOfProject{
-    "project", "requirements", "part", "sensors",    "robots",  "calibrations", "spots",
-    "regions", "panel_jobs",   "line", "part_types", "elastic", "drift_watch",  "fixture"};
+constexpr std::array<const char*, 15> kOfProject{
+    "project",    "requirements", "part",       "sensors", "robots",      "calibrations", "spots", "regions",
+    "panel_jobs", "line",         "part_types", "elastic", "drift_watch", "fixture",      "fleet"};
 constexpr std::array<ChainedTable, 5> kByRow{{{"setups", "setup"},
                                               {"evidence", "evidence"},
                                               {"drift_points", "drift point"},
                                               {"scans", "scan"},
                                               {"guides", "guide"}}};
-constexpr int kBegun = 12;  // the version that a chain begins in: tables of later ones are not there then
 // What is of one run, and the order of its rows.
 struct OfRun {
     const char *table, *key, *order;
@@ -294,12 +293,15 @@ Expected<void> begin_chain(Database& db, std::int32_t from_version) {
     const auto add = [&](std::string_view kind, const std::string& subject, const Digest& digest) {
         return append_chain(db, {}, kind, subject, digest);
     };
-    for (const char* table : kOfProject)
+    SEAM_TRY(const std::int64_t version, db.integer("PRAGMA user_version"));
+    for (const char* table : kOfProject) {
+        if (columns_of(table).since > version) continue;  // a later migration makes it, empty
         SEAM_OK(every_row(db, table, [&](const std::string& key, const Digest& digest) {
             return add(kProject, subject_of(table, key), digest);
         }));
+    }
     for (const ChainedTable& t : kByRow) {
-        if (columns_of(t.table).since > kBegun) continue;
+        if (columns_of(t.table).since > version) continue;
         SEAM_OK(every_row(db, t.table, [&](const std::string& key, const Digest& digest) {
             return add(t.kind, key, digest);
         }));

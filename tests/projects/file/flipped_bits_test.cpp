@@ -21,6 +21,7 @@ void make_full_file(const fs::path& path) {
     Project project = sample_project();
     project.part_types = {{"left", "door left", 1}, {"right", "", 0}};
     project.fixture = Fixture{"fixture", {{"locator 1", {1, 2, 3}, {{0, 0, 1}}}}, "-C([0-9]+)$"};
+    project.fleet = FleetLink{"fleet", "postgresql://seam@db.plant/fleet", "line 2"};
     auto file = ProjectFile::create(path, project);
     ASSERT_TRUE(file) << file.error().sentence();
     for (unsigned i = 1; i <= 2; ++i) ASSERT_TRUE(file->append_run(sample_run(i, 3, 40), project));

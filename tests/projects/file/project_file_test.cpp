@@ -464,7 +464,7 @@ TEST(ProjectFile, IdsHaveALength) {
         auto db = Database::open((folder / "a.seam").string(), SQLITE_OPEN_READWRITE).value();
         ASSERT_TRUE(
             db.execute("DROP TABLE users; DROP TABLE chain; DROP TABLE fixture; DROP TABLE outbox; DROP "
-                       "TABLE guides; PRAGMA "
+                       "TABLE guides; DROP TABLE fleet; PRAGMA "
                        "user_version = 11"));
     }
     auto old = ProjectFile::open(folder / "a.seam");

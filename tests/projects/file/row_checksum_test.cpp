@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 TEST(FlippedBits, OfTheFileAreNoticedOrHarmless) {
-    flip_bits_of_the_file(150, 1, 13);
+    flip_bits_of_the_file(150, 1, 14);
 }
 
 TEST(FlippedBits, OfEveryColumnAreNoticedWhenTheFileIsOpened) {

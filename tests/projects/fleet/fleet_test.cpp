@@ -1,21 +1,11 @@
 // Stations publish to a real server: once, the same numbers as in their files, whatever names and values hold.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <limits>
-#include <random>
 #include <thread>
 
 #include "devices/capture/sqlite.h"
 #include "projects/fleet/fleet_board.h"
-#include "projects/fleet/fleet_schema.h"
-#include "projects/fleet/fleet_statistics.h"
-#include "projects/fleet/publish.h"
-#include "projects/proof/zero_shift.h"
-#include "projects/statistics/statistics_page.h"
-#include "tests/projects/fleet/postgres_server.h"
-#include "tests/projects/statistics/production_runs.h"
+#include "tests/projects/fleet/fleet_fixture.h"
 
 namespace seamwright {
 namespace {
@@ -24,105 +14,6 @@ using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-
-template <class T>
-std::string sentence(const Expected<T>& done) {
-    return done ? std::string("it went well") : done.error().sentence();
-}
-
-class Fleet : public testing::Test {
-  protected:
-    static void SetUpTestSuite() { server_ = PostgresServer::start(why_).release(); }
-    static void TearDownTestSuite() {
-        delete server_;
-        server_ = nullptr;
-    }
-    void SetUp() override {
-        if (!server_) GTEST_SKIP() << "skipped: " << why_;
-        server_->ask("DROP SCHEMA IF EXISTS seamwright CASCADE");
-        const auto made = init_fleet(target());
-        ASSERT_TRUE(made) << made.error().sentence();
-    }
-    static FleetTarget target(const std::string& uri = server_->uri()) {
-        auto t = FleetTarget::from(uri);
-        EXPECT_TRUE(t) << sentence(t);
-        return *t;
-    }
-    ProjectFile make(const std::string& name, const std::vector<RunRecord>& runs) {
-        auto file = ProjectFile::create(folder_ / name, project_);
-        EXPECT_TRUE(file);
-        for (const RunRecord& run : runs) EXPECT_TRUE(file->append_run(run, project_));
-        return std::move(*file);
-    }
-    static std::int64_t publish(ProjectFile& file, const std::string& station = "left") {
-        PublishOptions options;
-        options.station = station;
-        const auto done = publish_file(file, target(), options);
-        EXPECT_TRUE(done) << sentence(done);
-        for (const auto& [run, error] : done->refused) ADD_FAILURE() << run << ": " << error.sentence();
-        return done ? done->runs : -1;
-    }
-    static Statistics of_fleet(const FleetStatisticsOptions& options = {}) {
-        auto s = fleet_statistics(target(), options);
-        EXPECT_TRUE(s) << sentence(s);
-        return s ? std::move(*s) : Statistics{};
-    }
-    // Five days of 16 parts, some of which are refused, some over the limits, with a spot that is not seen now and then.
-    std::vector<RunRecord> five_days(unsigned seed = 1, double middle = 0.5) {
-        std::mt19937 rng(seed);
-        std::normal_distribution<double> draw;
-        std::vector<RunRecord> runs;
-        for (int i = 0; i < 80; ++i) {
-            const int minute = 1440 * (i / 16) + 7 * (i % 16);
-            RunRecord run =
-                i % 50 == 17 ? refused_run(minute, Text("{}: {}", "edge", Text("sigma {:.3f} mm", 0.01 * i)))
-                : i % 60 == 7
-                    ? refused_run(minute, Text("sigma {:.3f} mm", 0.25), CorrectionStatus::over_limit,
-                                  {7, 0, 0})
-                    : production_run(minute, {middle + 0.2 * draw(rng), 0.3 * draw(rng), 0.1 * draw(rng)},
-                                     0.05 * draw(rng));
-            if (i % 30 == 3) {
-                SpotMeasurement lost;
-                lost.spot_id = "S1";
-                lost.status = SpotStatus::no_stripe;
-                run.spots.push_back(lost);
-            }
-            runs.push_back(std::move(run));
-        }
-        runs[20].status = RunStatus::cancelled;
-        runs[21].part_id = kZeroShiftPrefix + std::string("3");
-        runs[21].push = false;
-        return runs;
-    }
-
-    inline static PostgresServer* server_ = nullptr;
-    inline static std::string why_;
-    TemporaryFolder folder_;
-    Project project_ = production_project();
-};
-
-// Everything but what is named differs by rounding at most.
-void expect_same(const json& a, const json& b, const std::string& path) {
-    if (path == "/files" || path == "/diagnosis") return;
-    if (a.is_number() && b.is_number()) {
-        const double x = a.get<double>(), y = b.get<double>();
-        EXPECT_NEAR(x, y, 1e-5 * (1 + std::abs(x))) << path;
-        return;
-    }
-    ASSERT_EQ(a.type(), b.type()) << path << "\n" << a.dump() << "\n" << b.dump();
-    if (a.is_object()) {
-        for (const auto& [key, value] : a.items()) {
-            ASSERT_TRUE(b.contains(key)) << path << "/" << key;
-            expect_same(value, b[key], path + "/" + key);
-        }
-        EXPECT_EQ(a.size(), b.size()) << path;
-    } else if (a.is_array()) {
-        ASSERT_EQ(a.size(), b.size()) << path;
-        for (std::size_t i = 0; i < a.size(); ++i) expect_same(a[i], b[i], path + "/" + std::to_string(i));
-    } else {
-        EXPECT_EQ(a, b) << path;
-    }
-}
 
 TEST_F(Fleet, StatisticsAreThoseOfTheFile) {
     auto runs = five_days();
@@ -138,7 +29,6 @@ TEST_F(Fleet, StatisticsAreThoseOfTheFile) {
     }
     auto file = make("a.seam", runs);
     EXPECT_EQ(publish(file), 84);
-    EXPECT_GT(server_->ask("SELECT count(*) FROM seamwright.station_day WHERE done"), "4");
     for (const auto& [since, until] :
          {std::pair<std::string, std::string>{"", ""},
           {utc_text(1'714'564'800 + 86400 + 3000), ""},
@@ -152,28 +42,6 @@ TEST_F(Fleet, StatisticsAreThoseOfTheFile) {
         ASSERT_TRUE(by_file) << sentence(by_file);
         expect_same(statistics_json(*by_file), statistics_json(of_fleet({options, {}})), "");
     }
-}
-
-// An open day, a closed day and a day that is opened again are summed alike.
-TEST_F(Fleet, SumsOfClosedDaysAreThoseOfTheirValues) {
-    const auto runs = five_days();
-    auto file = ProjectFile::create(folder_ / "a.seam", project_).value();
-    // By and by, so that days close and the last one is open in between.
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-        ASSERT_TRUE(file.append_run(runs[i], project_));
-        if (i % 31 == 30) publish(file);
-    }
-    publish(file);
-    const json all = statistics_json(of_fleet());
-    expect_same(statistics_json(*production_statistics({folder_ / "a.seam"}, {})), all, "");
-    server_->ask("UPDATE seamwright.station_day SET done = false");
-    expect_same(statistics_json(of_fleet()), all, "");
-    // A late part of a day that was over.
-    auto late = make("late.seam", {production_run(1440 + 500, {0.4, 0, 0})});
-    ASSERT_TRUE(file.append_run(production_run(1440 + 500, {0.4, 0, 0}), project_));
-    publish(file);
-    expect_same(statistics_json(*production_statistics({folder_ / "a.seam"}, {})),
-                statistics_json(of_fleet()), "");
 }
 
 TEST_F(Fleet, StationsAreNoNeighboursOfEachOther) {
@@ -272,7 +140,8 @@ TEST_F(Fleet, AFileOfBeforeQueuesAllItsRuns) {
     { const ProjectFile closed = std::move(made); }
     {
         auto db = Database::open((folder_ / "a.seam").string(), SQLITE_OPEN_READWRITE).value();
-        ASSERT_TRUE(db.execute("DROP TABLE outbox; DROP TABLE guides; PRAGMA user_version = 12"));
+        ASSERT_TRUE(
+            db.execute("DROP TABLE outbox; DROP TABLE guides; DROP TABLE fleet; PRAGMA user_version = 12"));
     }
     auto file = ProjectFile::open(folder_ / "a.seam");
     ASSERT_TRUE(file) << sentence(file);

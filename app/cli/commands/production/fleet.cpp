@@ -9,11 +9,13 @@
 
 #include "app/cli/command.h"
 #include "app/cli/commands/production/watch_outputs.h"
+#include "app/cli/sign_in.h"
 #include "app/cli/signal_watch.h"
 #include "devices/capture/capture.h"
 #include "projects/file/project_file.h"
 #include "projects/fleet/fleet_board.h"
 #include "projects/fleet/fleet_schema.h"
+#include "projects/fleet/message.h"
 #include "projects/fleet/publish.h"
 
 namespace seamwright::cli {
@@ -45,10 +47,11 @@ struct PublishArguments {
 };
 
 Expected<Answer> publish(const PublishArguments& a) {
-    SEAM_TRY(const auto target, FleetTarget::from(a.to));
     SEAM_TRY(auto file, ProjectFile::open(a.file));
+    SEAM_TRY(const auto address, fleet_address(file, a.to, a.station));
+    const FleetTarget& target = address.target;
     PublishOptions options;
-    options.station = a.station;
+    options.station = address.station;
     options.cancel = stop_on_signal();
     if (isatty(fileno(stderr)))
         options.progress = [](std::int64_t published, std::int64_t queued) {
@@ -69,6 +72,43 @@ Expected<Answer> publish(const PublishArguments& a) {
         answer.text += fmt::format("run {} is not published: {}\n", run, error.sentence());
     }
     answer.exit_code = done.waiting > 0 ? kExitVerdict : kExitOk;
+    return answer;
+}
+
+struct NameArguments {
+    std::string file, to, station;
+    bool remove = false;
+};
+
+// Named in the project, so that nothing has to say it again.
+Expected<Answer> name_fleet(const NameArguments& a) {
+    SEAM_TRY(auto file, open_to_edit(a.file));
+    SEAM_TRY(auto project, file.load());
+    if (a.remove) {
+        project.fleet.reset();
+    } else if (!a.to.empty() || !a.station.empty()) {
+        FleetLink link = project.fleet.value_or(FleetLink{});
+        if (!a.to.empty()) {
+            SEAM_TRY(const auto target, FleetTarget::from(a.to));
+            if (target.holds_password())
+                return usage_error("a project is no place for a password, its file is copied", "--to",
+                                   "leave it out and write it into ~/.pgpass");
+            link.address = a.to;
+        }
+        if (link.address.empty()) return usage_error("the project names no fleet", a.file, "give --to URL");
+        if (!a.station.empty()) {
+            SEAM_OK(check_station_name(a.station));
+            link.station = a.station;
+        }
+        project.fleet = link;
+    }
+    SEAM_OK(file.save(project));
+    const FleetLink link = project.fleet.value_or(FleetLink{});
+    Answer answer;
+    answer.json = {{"status", "ok"}, {"to", link.address}, {"station", link.station}};
+    answer.text = project.fleet ? fmt::format("{} as {}\n", link.address,
+                                              link.station.empty() ? project.name : link.station)
+                                : "the project names no fleet\n";
     return answer;
 }
 
@@ -128,6 +168,21 @@ CLI::Option* add_fleet_option(CLI::App* command, const std::string& name, std::s
     return command->add_option(name, url, help.empty() ? kUrlHelp : help)->type_name(kUrl);
 }
 
+CLI::Option* add_project_fleet_option(CLI::App* command, std::string& url, const std::string& help) {
+    return add_fleet_option(command, "--fleet", url, help)->expected(0, 1);
+}
+
+Expected<FleetAddress> fleet_address(const ProjectFile& file, const std::string& url,
+                                     const std::string& station) {
+    SEAM_TRY(const auto project, file.load());
+    const FleetLink named = project.fleet.value_or(FleetLink{});
+    if (url.empty() && named.address.empty())
+        return usage_error("the project names no fleet", file.path().string(),
+                           "give the URL, or name it: seamwright fleet set FILE.seam --to URL");
+    SEAM_TRY(auto target, FleetTarget::from(url.empty() ? named.address : url));
+    return FleetAddress{std::move(target), station.empty() ? named.station : station};
+}
+
 void add_fleet(CommandLine& line) {
     CLI::App* group =
         line.group("fleet", "Results of many stations in one PostgreSQL database.",
@@ -149,9 +204,29 @@ void add_fleet(CommandLine& line) {
         "queued in the project. Exit 1: something waits.",
         "seamwright fleet publish door.seam --to postgresql://seam@db.plant/fleet --station 'line 2, left'");
     send->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
-    add_fleet_option(send, "--to", a->to)->required();
-    send->add_option("--station", a->station, "Its name in the fleet; else the project's")->type_name("NAME");
+    add_fleet_option(send, "--to", a->to, "The fleet's database; else the one that the project names");
+    send->add_option("--station", a->station,
+                     "Its name in the fleet; else what `fleet set` says, or the project's")
+        ->type_name("NAME");
     line.on(send, [a] { return publish(*a); });
+
+    auto named = std::make_shared<NameArguments>();
+    CLI::App* name = line.add(
+        *group, "set",
+        "Name the fleet in the project, for `fleet publish`, `run --watch --fleet` and `service --fleet` "
+        "without a URL. Its password "
+        "never: PGPASSWORD, PGPASSFILE or ~/.pgpass. Alone it shows what the project names.",
+        "seamwright fleet set door.seam --to postgresql://seam@db.plant/fleet --station 'line 2, left'");
+    name->add_option("file", named->file, "The project")->required()->type_name("FILE.seam");
+    add_sign_in(name);
+    auto* to = add_fleet_option(name, "--to", named->to, "The fleet's database, without a password");
+    auto* station =
+        name->add_option("--station", named->station, "This station's name in the fleet; else the project's")
+            ->type_name("NAME");
+    name->add_flag("--remove", named->remove, "The project names none any more")
+        ->excludes(to)
+        ->excludes(station);
+    line.on(name, [named] { return name_fleet(*named); });
 
     auto at = std::make_shared<StatusArguments>();
     CLI::App* show = line.add(

@@ -1,4 +1,4 @@
-// seamwright run and replay: the Station from the command line.
+// seamwright run: the Station from the command line.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,7 +22,6 @@
 #include "devices/registry.h"
 #include "projects/line/line_control.h"
 #include "projects/model/part_types.h"
-#include "projects/proof/replay.h"
 #include "projects/station/check.h"
 #include "projects/station/station.h"
 #include "projects/station/watch.h"
@@ -236,49 +235,6 @@ Expected<Answer> run(const RunArguments& a) {
     return answer;
 }
 
-struct ReplayArguments {
-    std::vector<std::string> files;
-    std::int64_t run = 0;
-    int jobs = 1;
-};
-
-Expected<Answer> replay_command(const ReplayArguments& a) {
-    Answer answer;
-    answer.json = {{"status", "ok"}, {"files", json::array()}};
-    int runs = 0;
-    std::int64_t captures = 0;
-    std::size_t differences = 0;
-    for (const std::string& file : a.files) {
-        ReplayOptions options;
-        options.run = a.run;
-        options.jobs = a.jobs;
-        options.cancel = stop_on_signal();
-        SEAM_TRY(auto result, replay(file, options));
-        json list = json::array();
-        for (const ReplayDifference& d : result.differences) {
-            list.push_back({{"run", d.run}, {"what", d.what}, {"text", d.text}, {"size_mm", d.size_mm}});
-            answer.text += fmt::format("{} run {} {}: {}\n", file, d.run, d.what, d.text);
-        }
-        answer.json["files"].push_back({{"file", file},
-                                        {"runs", result.runs},
-                                        {"captures", result.captures},
-                                        {"cancelled", result.cancelled},
-                                        {"differences", list}});
-        runs += result.runs;
-        captures += result.captures;
-        differences += result.differences.size();
-        if (result.cancelled) answer.exit_code = kExitVerdict;
-    }
-    if (differences) answer.exit_code = kExitVerdict;
-    answer.json["status"] = differences ? "differs" : answer.exit_code ? "cancelled" : "ok";
-    answer.json["runs"] = runs;
-    answer.json["captures"] = captures;
-    answer.text +=
-        fmt::format("{} runs, {} captures computed again: {}\n", runs, captures,
-                    differences ? fmt::format("{} differences", differences) : "bit for bit as stored");
-    return answer;
-}
-
 }  // namespace
 
 void add_run(CommandLine& line) {
@@ -337,17 +293,6 @@ void add_run(CommandLine& line) {
     part->excludes(watching);
     hold->excludes(watching);
     line.on(command, [a] { return a->watch ? watch_project(*a) : run(*a); });
-}
-
-void add_replay(CommandLine& line) {
-    auto a = std::make_shared<ReplayArguments>();
-    CLI::App* command =
-        line.add("replay", "Compute stored runs again from their raw data and compare bit for bit.",
-                 "seamwright replay door_left.seam --jobs 2");
-    command->add_option("files", a->files, "Projects")->required()->type_name("FILE.seam");
-    command->add_option("--run", a->run, "Only this run");
-    command->add_option("--jobs", a->jobs, "Threads")->check(CLI::Range(1, 256))->capture_default_str();
-    line.on(command, [a] { return replay_command(*a); });
 }
 
 }  // namespace seamwright::cli

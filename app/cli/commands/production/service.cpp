@@ -15,6 +15,7 @@ struct ServiceArguments {
     std::string file, out, user, identity, password_file, status, status_token, report_every, report_from,
         report_to, fleet, station;
     bool push = false;
+    CLI::Option* into_fleet = nullptr;  // --fleet, which may be given without a URL
     std::int64_t keep = 0;
 };
 
@@ -49,9 +50,10 @@ Expected<std::string> unit_text(const ServiceArguments& a, const std::filesystem
     add("--status-token", a.status_token.empty() ? "" : absolute(a.status_token));
     add("--report-every", a.report_every);
     add("--report-from", a.report_from);
-    add("--fleet", a.fleet);
-    add("--station", a.station);
     add("--to", a.report_to.empty() ? "" : absolute(a.report_to));
+    add("--fleet", a.fleet);
+    if (a.fleet.empty() && a.into_fleet->count() > 0) words.emplace_back("--fleet");
+    add("--station", a.station);
     std::string line;
     for (const std::string& word : words) {
         auto text = quoted(word);
@@ -103,6 +105,7 @@ Expected<void> check_fleet(const std::string& url) {
 Expected<Answer> service_command(const ServiceArguments& a) {
     SEAM_OK(check_fleet(a.fleet));
     SEAM_TRY(const auto file, ProjectFile::open(a.file, FileAccess::read_only));
+    if (a.into_fleet->count() > 0) SEAM_OK(fleet_address(file, a.fleet, a.station).map([](const auto&) {}));
     SEAM_TRY(const auto users, file.users());
     if (a.push && !users.empty() && a.identity.empty())
         return usage_error("the project has users, and the service pushes as none of them", a.file,
@@ -158,10 +161,11 @@ void add_service(CommandLine& line) {
         command->add_option("--report-every", a->report_every, "As of run: a report of every 8h")->needs(to);
     to->needs(every);
     command->add_option("--report-from", a->report_from, "As of run: when a shift begins")->needs(every);
-    auto* fleet = add_fleet_option(command, "--fleet", a->fleet,
-                                   "As of run: the fleet's database, without its password");
+    a->into_fleet = add_project_fleet_option(command, a->fleet,
+                                             "As of run: the fleet's database, without its password; without "
+                                             "a URL the fleet that the project names");
     command->add_option("--station", a->station, "As of run: the station's name")
-        ->needs(fleet)
+        ->needs(a->into_fleet)
         ->type_name("NAME");
     line.on(command, [a] { return service_command(*a); });
 }

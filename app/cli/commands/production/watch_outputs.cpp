@@ -41,12 +41,12 @@ Expected<std::unique_ptr<ShiftReports>> open_reports(const WatchOutputArguments&
 constexpr std::chrono::milliseconds kLastPublishing{8000};
 
 Expected<std::unique_ptr<FleetPublisher>> open_fleet(const WatchOutputArguments& a, ProjectFile& file) {
-    if (a.fleet.empty()) return std::unique_ptr<FleetPublisher>();
-    SEAM_TRY(const auto target, FleetTarget::from(a.fleet));
+    if (!a.into_fleet || a.into_fleet->count() == 0) return std::unique_ptr<FleetPublisher>();
+    SEAM_TRY(const auto address, fleet_address(file, a.fleet, a.station));
     PublisherOptions options;
-    options.station = a.station;
+    options.station = address.station;
     options.told = [](const Text& text) { fmt::print(stderr, "{} fleet: {}\n", utc_now(), text); };
-    return FleetPublisher::start(file, target, std::move(options));
+    return FleetPublisher::start(file, address.target, std::move(options));
 }
 
 }  // namespace
@@ -90,13 +90,17 @@ void add_watch_outputs(CLI::App* command, CLI::Option* watching, WatchOutputArgu
             "this computer")
         ->needs(status)
         ->type_name("FILE");
-    auto* fleet =
-        add_fleet_option(command, "--fleet", a.fleet,
-                         "With --watch: every part into the fleet's database, in the background; what it "
-                         "does not take waits in the project (`fleet publish`)")
+    a.into_fleet =
+        add_project_fleet_option(
+            command, a.fleet,
+            "With --watch: every part into the fleet's database, in the background; what it "
+            "does not take waits in the project (`fleet publish`). Without a URL, as the last word, the "
+            "fleet that the project names (`fleet set`)")
             ->needs(watching);
-    command->add_option("--station", a.station, "With --fleet: the name of this station; else the project's")
-        ->needs(fleet)
+    command
+        ->add_option("--station", a.station,
+                     "With --fleet: the name of this station; else what `fleet set` says, or the project's")
+        ->needs(a.into_fleet)
         ->type_name("NAME");
     command->add_option("--report-language", a.language, "en or de, of reports and status page")
         ->needs(watching)

@@ -16,6 +16,7 @@ struct WatchOutputArguments {
     std::string report_every, report_from = "00:00", report_to, language = "en";
     std::string status, status_token;
     std::string fleet, station;
+    CLI::Option* into_fleet = nullptr;  // --fleet, which may be given without a URL
 };
 // The first line of the file: what stands on a command line everybody on the computer can read. "": none. Error (usage): empty.
 Expected<std::string> read_status_token(const std::string& path);

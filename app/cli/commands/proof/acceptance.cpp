@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/cli/batch_command.h"
 #include "app/cli/command.h"
 #include "app/cli/commands/proof/acceptance_live.h"
 #include "app/cli/sign_in.h"
@@ -29,6 +30,7 @@ struct AcceptanceArguments {
     std::map<std::string, CLI::Option*> required;  // by the names of acceptance_fields()
     AcceptanceSettings settings;
     LiveArguments live;
+    BatchArguments batch;
     CLI::Option *runs = nullptr, *switch_offset = nullptr;
     OffsetSwitch offset;
     bool keep_requirements = false, keep_offset = false;
@@ -63,11 +65,11 @@ Expected<AcceptanceSettings> settings_of(const AcceptanceArguments& a) {
     return settings;
 }
 
-Expected<StoredStudy> values_of(const AcceptanceArguments& a) {
+Expected<StoredStudy> values_of(const AcceptanceArguments& a, Parts* parts) {
     StoredStudy study;
     if (!a.file.empty()) {
         SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
-        auto stored = stored_values(file, a.region);
+        auto stored = stored_values(file, a.region, parts);
         if (!stored) return stored;
         study = std::move(*stored);
     } else {
@@ -198,8 +200,30 @@ Expected<Answer> device_study_command(const AcceptanceArguments& a) {
     return answer;
 }
 
+// What a split acceptance does: the tasks read the stored runs, who collects judges them.
+BatchJob acceptance_job(const AcceptanceArguments& a) {
+    BatchJob job;
+    job.name = "acceptance";
+    job.what = {{"file", file_identity(a.file)}, {"region", a.region}};
+    job.words = {"acceptance", absolute_path(a.file)};
+    if (!a.region.empty()) job.words.insert(job.words.end(), {"--region", a.region});
+    return job;
+}
+
+Expected<Answer> acceptance_task(const AcceptanceArguments& a) {
+    SEAM_TRY(const auto portion, portion_from(a.batch.task, "--task"));
+    SEAM_TRY(const auto file, ProjectFile::open(a.file, FileAccess::read_only));
+    Parts part(portion);
+    SEAM_OK(stored_values_part(file, a.region, part));
+    return part_answer(a.batch, part.json());
+}
+
 Expected<Answer> acceptance_command(const AcceptanceArguments& given) {
     AcceptanceArguments a = given;
+    if (a.batch.is_task()) return acceptance_task(a);
+    if (a.batch.is_split() && (a.file.empty() || a.runs->count() > 0 || a.study == "robot" ||
+                               a.study == "trigger" || a.study == "sensor"))
+        return usage_error("only what is judged of stored runs is split", "--engine", "leave it out");
     if (a.switch_offset->count() > 0 || a.offset.undo) {
         if (a.file.empty()) return usage_error("it is of a project", "--switch-offset", "give FILE.seam");
         return switch_offset_command(a.file, a.region, a.offset);
@@ -230,7 +254,13 @@ Expected<Answer> acceptance_command(const AcceptanceArguments& given) {
         if (!measured.complete()) return incomplete_answer(measured);
         progress = std::move(measured);
     }
-    SEAM_TRY(auto study, values_of(a));
+    std::optional<Parts> parts;
+    if (a.batch.is_split()) {
+        SEAM_TRY(auto collected, collect(a.batch, acceptance_job(a)));
+        if (collected.incomplete) return std::move(*collected.incomplete);
+        SEAM_TRY(parts, Parts::collected(collected.parts));
+    }
+    SEAM_TRY(auto study, values_of(a, parts ? &*parts : nullptr));
     if (a.settings.part.empty()) a.settings.part = study.reference_part;
     std::vector<Study> studies(std::begin(kStudies), std::end(kStudies));
     if (const auto one = study_from(a.study)) studies = {*one};
@@ -384,6 +414,7 @@ void add_acceptance(CommandLine& line) {
         ->excludes(keep)
         ->excludes(a->runs)
         ->excludes(a->switch_offset);
+    add_batch_options(command, a->batch);
     line.on(command, [a] { return acceptance_command(*a); });
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/cli/batch_command.h"
 #include "app/cli/command.h"
 #include "devices/exchange/files.h"
 #include "projects/evaluate/elastic_experiment.h"
@@ -42,6 +43,29 @@ Answer panel_answer(int panels, std::uint64_t seed) {
     return answer;
 }
 
+BatchJob evaluation_job(const std::string& experiment, const EvaluationSettings& s) {
+    BatchJob job;
+    job.name = "evaluate";
+    job.what = {{"experiment", experiment}, {"trials", s.trials},       {"seed", s.seed},
+                {"noise_mm", s.noise_mm},   {"jitter_mm", s.jitter_mm}, {"bend_mm", s.bend_mm}};
+    job.threads = std::max(1, s.jobs);  // all cores of its computer is what a task does not take
+    job.words = {"evaluate",
+                 "--experiment",
+                 experiment,
+                 "--trials",
+                 fmt::format("{}", s.trials),
+                 "--seed",
+                 fmt::format("{}", s.seed),
+                 "--noise-mm",
+                 fmt::format("{}", s.noise_mm),
+                 "--jitter-mm",
+                 fmt::format("{}", s.jitter_mm),
+                 fmt::format("--bend-mm={}", s.bend_mm),
+                 "--jobs",
+                 fmt::format("{}", job.threads)};
+    return job;
+}
+
 }  // namespace
 
 void add_evaluate(CommandLine& line) {
@@ -54,6 +78,7 @@ void add_evaluate(CommandLine& line) {
                  "seamwright evaluate --experiment all --seed 1 --report evaluation.html");
     struct Arguments {
         EvaluationSettings settings;
+        BatchArguments batch;
         std::string experiment = "all", report;
     };
     auto a = std::make_shared<Arguments>();
@@ -73,9 +98,14 @@ void add_evaluate(CommandLine& line) {
         ->check(CLI::Range(0.0, 10.0));
     command->add_option("--bend-mm", a->settings.bend_mm, "Bend of the measured door [0]")
         ->check(CLI::Range(-5.0, 5.0));
+    add_batch_options(command, a->batch);
     command->add_option("--report", a->report, "HTML report with histograms and curves")
         ->type_name("FILE.html");
     line.on(command, [a]() -> Expected<Answer> {
+        if ((a->experiment == "panel" || a->experiment == "elastic") &&
+            (a->batch.is_split() || a->batch.is_task()))
+            return usage_error(Text("the experiment {} is not split", a->experiment), "--engine",
+                               "leave it out");
         if (a->experiment == "panel") return panel_answer(a->settings.trials, a->settings.seed);
         if (a->experiment == "elastic") {
             SEAM_TRY(const auto elastic, elastic_experiment(a->settings));
@@ -84,8 +114,22 @@ void add_evaluate(CommandLine& line) {
         a->settings.experiment = a->experiment == "all"      ? 0
                                  : a->experiment == "online" ? kOnline
                                                              : a->experiment[0] - '0';
-        SEAM_TRY(auto result,
-                 evaluate(a->settings, [](const std::string& s) { fmt::print(stderr, "{}\n", s); }));
+        const auto told = [](const std::string& s) { fmt::print(stderr, "{}\n", s); };
+        if (a->batch.is_task()) {
+            SEAM_TRY(const auto portion, portion_from(a->batch.task, "--task"));
+            Parts part(portion);
+            a->settings.parts = &part;
+            SEAM_OK(evaluate(a->settings, told).map([](const auto&) {}));
+            return part_answer(a->batch, part.json());
+        }
+        std::optional<Parts> parts;
+        if (a->batch.is_split()) {
+            SEAM_TRY(auto collected, collect(a->batch, evaluation_job(a->experiment, a->settings)));
+            if (collected.incomplete) return std::move(*collected.incomplete);
+            SEAM_TRY(parts, Parts::collected(collected.parts));
+            a->settings.parts = &*parts;
+        }
+        SEAM_TRY(auto result, evaluate(a->settings, told));
         if (!a->report.empty()) SEAM_OK(write_text_file(a->report, evaluation_html(result)));
         return Answer{evaluation_json(result), evaluation_text(result), kExitOk};
     });

@@ -25,6 +25,8 @@ struct Place {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
 };
 
+}  // namespace
+
 void make_histogram(DeviationMap& map, int bins) {
     std::vector<float> sizes;
     for (const float v : map.signed_mm)
@@ -43,8 +45,6 @@ void make_histogram(DeviationMap& map, int bins) {
         ++map.histogram[static_cast<std::size_t>(k)].count;
     }
 }
-
-}  // namespace
 
 DeviationMap deviation_map(const Cloud& cloud, const Surface& surface, const Pose& base_from_part,
                            const DeviationOptions& options) {

@@ -37,4 +37,7 @@ struct DeviationMap {
 DeviationMap deviation_map(const Cloud& cloud, const Surface& surface, const Pose& base_from_part,
                            const DeviationOptions& options);
 
+// Of signed_mm as they stand; nothing where there are none.
+void make_histogram(DeviationMap& map, int bins);
+
 }  // namespace seamwright

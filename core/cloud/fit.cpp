@@ -130,20 +130,6 @@ struct Levels {
     Cloud fine, judges, few;
 };
 
-Expected<void> check_input(const Cloud& cloud, const Surface& surface, const FitOptions& options) {
-    if (cloud.size() < 50)
-        return input_error(Text("the scan has {} points, too few to be fitted", cloud.size()), {},
-                           "scan more of the part: at least 50 points");
-    for (const auto& p : cloud.points)
-        if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 1e6)
-            return input_error("the scan has a point that is not finite or beyond 1 km", {},
-                               "give millimetres");
-    if (surface.empty()) return input_error("the part has no surface");
-    if (!(options.noise_mm >= 0) || !(options.start_mm > 0) || !(options.start_deg > 0))
-        return input_error("noise and tolerance of the start must be positive");
-    return {};
-}
-
 bool stopped(const FitOptions& options) {
     return options.cancelled && options.cancelled();
 }
@@ -437,8 +423,22 @@ const char* to_string(FitStatus status) {
     return "";
 }
 
+Expected<void> check_fit_input(const Cloud& cloud, const Surface& surface, const FitOptions& options) {
+    if (cloud.size() < 50)
+        return input_error(Text("the scan has {} points, too few to be fitted", cloud.size()), {},
+                           "scan more of the part: at least 50 points");
+    for (const auto& p : cloud.points)
+        if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 1e6)
+            return input_error("the scan has a point that is not finite or beyond 1 km", {},
+                               "give millimetres");
+    if (surface.empty()) return input_error("the part has no surface");
+    if (!(options.noise_mm >= 0) || !(options.start_mm > 0) || !(options.start_deg > 0))
+        return input_error("noise and tolerance of the start must be positive");
+    return {};
+}
+
 Expected<SurfaceFit> fit_surface(const Cloud& cloud, const Surface& surface, const FitOptions& options) {
-    SEAM_OK(check_input(cloud, surface, options));
+    SEAM_OK(check_fit_input(cloud, surface, options));
     return Fit(cloud, surface, options).run();
 }
 

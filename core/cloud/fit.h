@@ -71,4 +71,7 @@ struct SurfaceFit {
 // Error (input): fewer than 50 points, not finite, an empty surface, pairs on a line.
 Expected<SurfaceFit> fit_surface(const Cloud& cloud, const Surface& surface, const FitOptions& options);
 
+// What fit_surface refuses before it begins, pairs aside.
+Expected<void> check_fit_input(const Cloud& cloud, const Surface& surface, const FitOptions& options);
+
 }  // namespace seamwright

@@ -67,10 +67,15 @@ json fit_json(const FitReport& report) {
              {"sigma", nullptr},
              {"deviation", nullptr},
              {"share_seen", nullptr}};
+    if (report.to_edges()) out["edges"] = report.edges;
     if (fit.status == FitStatus::no_fit || fit.status == FitStatus::cancelled) return out;
     out["base_from_workobject"] = pose_json(fit.base_from_part);
     out["deviation"] = deviation_json(report.deviation);
     out["share_seen"] = report.deviation.share_seen;
+    if (report.to_edges()) {
+        out["deviation"]["normal_rms_mm"] = report.normal_rms_mm;
+        out["spacing_mm"] = report.spacing_mm;
+    }
     if (!has_covariance(fit)) return out;
     json rows = json::array();
     for (int k = 0; k < 6; ++k) rows.push_back(numbers(fit.covariance.row(k).transpose()));
@@ -85,8 +90,11 @@ json fit_json(const FitReport& report) {
 
 std::string fit_text(const FitReport& report) {
     const SurfaceFit& fit = report.fit;
-    std::string text = fmt::format("{}: {} points, {:.0f} % of them on the part\n", to_string(fit.status),
-                                   fit.points, 100 * fit.share_on_part);
+    std::string text = report.to_edges()
+                           ? fmt::format("{}: {} ends of the sheet, {:.0f} % of them on the edge\n",
+                                         to_string(fit.status), fit.points, 100 * fit.share_on_part)
+                           : fmt::format("{}: {} points, {:.0f} % of them on the part\n",
+                                         to_string(fit.status), fit.points, 100 * fit.share_on_part);
     if (!fit.reason.empty()) text += fit.reason.english() + "\n";
     if (fit.status == FitStatus::no_fit || fit.status == FitStatus::cancelled) return text;
     const json pose = pose_json(fit.base_from_part);
@@ -106,6 +114,14 @@ std::string fit_text(const FitReport& report) {
             fit.noise_mm, fit.form_mm);
     }
     const DeviationMap& d = report.deviation;
+    if (report.to_edges())
+        return text +
+               fmt::format(
+                   "deviation of the ends: rms {:.3f} mm along the sheet and {:.3f} mm out of it, 3 sigma "
+                   "{:.3f} mm, worst {:+.3f} mm at ({:.1f}, {:.1f}, {:.1f}) of the part; {:.0f} % of the "
+                   "edge seen\n",
+                   d.rms_mm, report.normal_rms_mm, d.three_sigma_mm, d.worst_mm, d.worst_part_mm.x(),
+                   d.worst_part_mm.y(), d.worst_part_mm.z(), 100 * d.share_seen);
     text += fmt::format(
         "deviation: rms {:.3f} mm, 3 sigma {:.3f} mm, worst {:+.3f} mm at ({:.1f}, {:.1f}, {:.1f}) of the "
         "part; {:.0f} % of the part seen\n",

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -81,7 +82,11 @@ std::string deviation_svg(const FitReport& report, const Cloud& cloud, const Sur
         "<text x=\"6\" y=\"{6:.1f}\">{7}</text></svg>",
         left + px * worst[across] / cell, top + height - px * worst[up] / cell, left,
         report::escape(
-            Text("deviation, mm: red outside, blue inside the drawing; circle: worst place").in(language)),
+            (report.to_edges()
+                 ? Text("end of the sheet, mm: red beyond the drawing's edge, blue short of it; circle: "
+                        "worst place")
+                 : Text("deviation, mm: red outside, blue inside the drawing; circle: worst place"))
+                .in(language)),
         top + height + 20, "XYZ"[across], top + height / 2, "XYZ"[up]);
     return svg;
 }
@@ -132,8 +137,11 @@ report::Page fit_page(const FitReport& report, const Cloud& cloud, const Surface
                       Language language) {
     const SurfaceFit& fit = report.fit;
     const auto said = [&](const Text& t) { return t.in(language); };
-    report::Page page(said("Scan on the drawing"), std::string(code_of(language)));
-    page.heading(said("Scan on the drawing"), 1);
+    report::Page page(
+        said(report.to_edges() ? Text("Scan on an edge of the drawing") : Text("Scan on the drawing")),
+        std::string(code_of(language)));
+    page.heading(
+        said(report.to_edges() ? Text("Scan on an edge of the drawing") : Text("Scan on the drawing")), 1);
     page.paragraph(said(Text("Scan {}, part {}.", report.scan, report.part)));
     page.verdict(to_string(fit.status),
                  fit.status == FitStatus::ok ? report::Tone::good : report::Tone::alarm, said(fit.reason));
@@ -141,16 +149,27 @@ report::Page fit_page(const FitReport& report, const Cloud& cloud, const Surface
     page.table(pose_rows(fit, language), said("The part in the robot's base (base_from_workobject)"));
     for (const Text& open : fit.unobservable) page.paragraph(said(Text("Left open: {}", open)));
     const DeviationMap& d = report.deviation;
-    page.table({{said("Deviation of the part from its drawing"), "mm"},
-                {"rms", number(d.rms_mm, 3)},
-                {said("mean"), number(d.mean_mm, 3)},
-                {"3 sigma", number(d.three_sigma_mm, 3)},
-                {said("worst place"), number(d.worst_mm, 3)}});
-    page.paragraph(said(Text(
-        "Worst at ({:.1f}, {:.1f}, {:.1f}) of the part. {:.0f} % of its surface were seen, {:.0f} % of the "
-        "scan's {} points lie on it.",
-        d.worst_part_mm.x(), d.worst_part_mm.y(), d.worst_part_mm.z(), 100 * d.share_seen,
-        100 * fit.share_on_part, fit.points)));
+    report::Rows rows{{said("Deviation of the part from its drawing"), "mm"},
+                      {"rms", number(d.rms_mm, 3)},
+                      {said("mean"), number(d.mean_mm, 3)},
+                      {"3 sigma", number(d.three_sigma_mm, 3)},
+                      {said("worst place"), number(d.worst_mm, 3)}};
+    if (report.to_edges()) rows.push_back({said("rms out of the sheet"), number(report.normal_rms_mm, 3)});
+    page.table(rows);
+    if (report.to_edges())
+        page.paragraph(said(
+            Text("Worst at ({:.1f}, {:.1f}, {:.1f}) of the part. {:.0f} % of the edge ({}) were seen, {:.0f} "
+                 "% of the sheet's "
+                 "{} ends lie on it.",
+                 d.worst_part_mm.x(), d.worst_part_mm.y(), d.worst_part_mm.z(), 100 * d.share_seen,
+                 fmt::format("{}", fmt::join(report.edges, ", ")), 100 * fit.share_on_part, fit.points)));
+    else
+        page.paragraph(
+            said(Text("Worst at ({:.1f}, {:.1f}, {:.1f}) of the part. {:.0f} % of its surface were seen, "
+                      "{:.0f} % of the "
+                      "scan's {} points lie on it.",
+                      d.worst_part_mm.x(), d.worst_part_mm.y(), d.worst_part_mm.z(), 100 * d.share_seen,
+                      100 * fit.share_on_part, fit.points)));
     page.figure(deviation_svg(report, cloud, surface, language), said("Mean deviation by place"));
     page.figure(report::svg(histogram_plot(d, language)));
     return page;

@@ -14,6 +14,11 @@ struct FitReport {
     std::string scan, part;  // where they came from
     SurfaceFit fit;
     DeviationMap deviation;  // of `cloud`; empty where there is no fit
+    // Of a fit to edges: their ids, and then points are ends of the sheet, `cloud` below is those, and the deviation is along
+    // the sheet.
+    std::vector<std::string> edges;
+    double normal_rms_mm = 0, spacing_mm = 0;
+    bool to_edges() const { return !edges.empty(); }
 };
 
 // The contract's fields. covariance and sigma are null where the pose is not determined.

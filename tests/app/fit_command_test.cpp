@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -74,6 +75,65 @@ TEST_F(FitCommand, ABlockIsRefusedWithoutAStartAndFoundWithOne) {
     EXPECT_FALSE(answer["deviation"]["histogram"].empty());
     EXPECT_NE(slurp(at("fit.html")).find("<svg"), std::string::npos);
     EXPECT_EQ(slurp(at("map.svg")).rfind("<svg", 0), 0U);
+}
+
+// A sheet of 400 x 120 mm whose one side is waved, and its scan from profiles across that side, moved by `shift` along Y.
+double waved(double x) {
+    return 100 + 12 * std::sin(x / 45) + 6 * std::cos(x / 110);
+}
+double humped(double x) {
+    return 10 * std::sin(x / 70);
+}
+
+TEST_F(FitCommand, ASheetIsFoundByItsWavedSide) {
+    std::string obj, csv = "x_mm,y_mm,z_mm\n";
+    int n = 0;
+    for (double x = 0; x < 400; x += 4, n += 4) {
+        for (const double at : {x, x + 4})
+            for (const double y : {0.0, waved(at)})
+                obj += "v " + std::to_string(at) + " " + std::to_string(y) + " " +
+                       std::to_string(humped(at)) + "\n";
+        const auto v = [&](int k) { return " " + std::to_string(n + k); };
+        obj += "f" + v(1) + v(3) + v(4) + "\nf" + v(1) + v(4) + v(2) + "\n";
+    }
+    unsigned noise = 1;
+    for (double x = 1; x < 399; x += 2)
+        for (double y = 40.03 + 0.017 * x; y < waved(x); y += 0.25) {
+            noise = noise * 1664525U + 1013904223U;
+            csv += std::to_string(x) + "," + std::to_string(y + 5) + "," +
+                   std::to_string(humped(x) + 0.02 * (static_cast<double>(noise >> 16) / 32768 - 1)) + "\n";
+        }
+    const std::string mesh = write("sheet.obj", obj), cloud = write("sheet.csv", csv);
+    const ProgramResult listed = run_program({"drawing", mesh, "--json", "-"}, folder_);
+    ASSERT_EQ(listed.exit_code, 0) << listed.err;
+    std::string side;
+    double longest = 0;
+    const json drawing = json::parse(listed.out);
+    for (const json& edge : drawing["edges"])
+        if (edge["length_mm"].get<double>() > longest)
+            longest = edge["length_mm"].get<double>(), side = edge["id"].get<std::string>();
+    const std::vector<std::string> with = {
+        "--cloud", cloud,    "--mesh", mesh,      "--to",
+        "edge",    "--edge", side,     "--start", R"({"xyz":[0,0,0],"abc":[0,0,0]})"};
+    auto found_with = with;
+    found_with.insert(found_with.end(), {"--report", at("edge.html"), "--json", "-"});
+    const ProgramResult found = run(found_with);
+    ASSERT_EQ(found.exit_code, 0) << found.err << found.out;
+    const json answer = json::parse(found.out);
+    EXPECT_EQ(answer["status"], "ok");
+    EXPECT_EQ(answer["edges"], json::array({side}));
+    EXPECT_NEAR(answer["base_from_workobject"]["xyz"][1].get<double>(), 5, 0.3);
+    EXPECT_EQ(answer["covariance"].size(), 6U);
+    EXPECT_FALSE(answer["deviation"]["histogram"].empty());
+    EXPECT_NE(slurp(at("edge.html")).find("<svg"), std::string::npos);
+
+    auto nowhere = with;
+    nowhere[7] = "e9999";
+    EXPECT_EQ(run(nowhere).exit_code, 2);
+    EXPECT_EQ(run({"--cloud", cloud, "--mesh", mesh, "--to", "edge"}).exit_code, 2);
+    EXPECT_EQ(run({"--cloud", cloud, "--mesh", mesh, "--to", "edge", "--edge", side}).exit_code, 2)
+        << "an edge alone is found from a start only";
+    EXPECT_EQ(run({"--cloud", cloud, "--mesh", mesh, "--edge", side}).exit_code, 2);
 }
 
 TEST_F(FitCommand, BadInputIsOneSentenceAndNothingIsWritten) {

@@ -6,12 +6,14 @@
 #include "app/cli/command.h"
 #include "app/cli/sign_in.h"
 #include "app/cli/signal_watch.h"
+#include "core/cloud/edge/edge_fit.h"
 #include "devices/drawing/drawing.h"
 #include "devices/exchange/cloud/cloud_file.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/scene/mesh_file.h"
+#include "projects/scan/drawn_edges.h"
 #include "projects/scan/fit_report.h"
 #include "projects/scan/scan.h"
 #include "widgets/print/pdf.h"
@@ -24,7 +26,8 @@ using nlohmann::json;
 struct FitArguments {
     std::string file, scan, to = "drawing", cloud, mesh, start, pairs, unit, report, pdf, colours,
                             language = "en";
-    bool take = false, anywhere = false;
+    std::vector<std::string> edges;
+    bool take = false, anywhere = false, chain = false;
     FitOptions options;
 };
 
@@ -48,35 +51,56 @@ Expected<void> read_pairs(const std::string& path, FitOptions& options) {
     return {};
 }
 
+struct Part {
+    TriangleMesh mesh;
+    std::vector<EdgeCurve> edges;  // --to edge
+};
+
 // STEP and IGES tessellated; STL, PLY and OBJ as they are.
-Expected<TriangleMesh> part_surface(const std::string& path, const std::string& unit) {
-    std::string kind = std::filesystem::path(path).extension().string();
+Expected<Part> part_of_file(const FitArguments& a) {
+    std::string kind = std::filesystem::path(a.mesh).extension().string();
     for (char& c : kind)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    if (kind != ".step" && kind != ".stp" && kind != ".iges" && kind != ".igs") return load_mesh(path, unit);
+    Part part;
+    if (a.to != "edge" && kind != ".step" && kind != ".stp" && kind != ".iges" && kind != ".igs") {
+        SEAM_TRY(part.mesh, load_mesh(a.mesh, a.unit));
+        return part;
+    }
     DrawingOptions options;
-    options.unit = unit;
+    options.unit = a.unit;
     options.cancel = stop_on_signal();
-    SEAM_TRY(auto drawing, read_drawing(path, options));
-    return std::move(drawing.mesh);
+    SEAM_TRY(auto drawing, read_drawing(a.mesh, options));
+    if (a.to == "edge") {
+        SEAM_TRY(part.edges, drawn_edges(drawing, a.edges, a.chain));
+    }
+    part.mesh = std::move(drawing.mesh);
+    return part;
 }
 
 // The drawing, and of a project where the part is supposed to stand.
-Expected<TriangleMesh> drawing(FitArguments& a) {
+Expected<Part> part_to_fit(FitArguments& a) {
     if (a.file.empty()) {
         if (a.cloud.empty() || a.mesh.empty())
             return usage_error("there is nothing to fit", "fit",
                                "give --cloud SCAN.ply --mesh PART.stl, or FILE.seam --scan SCAN.ply");
-        return part_surface(a.mesh, a.unit);
+        return part_of_file(a);
     }
     SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
     SEAM_TRY(auto project, file.load());
     if (!a.anywhere && !a.options.start && a.options.pairs_part.empty())
         a.options.start = project.part.base_from_workobject;
-    if (!a.mesh.empty()) return part_surface(a.mesh, a.unit);
+    if (!a.mesh.empty()) return part_of_file(a);
     if (project.part.mesh_ply.empty())
         return input_error("the project's part has no drawing", a.file, "give the mesh with --mesh PART.stl");
-    return mesh_from_ply(project.part.mesh_ply, a.file);
+    Part part;
+    if (a.to == "edge") {
+        DrawingOptions options;
+        options.cancel = stop_on_signal();
+        SEAM_TRY(auto drawing, read_drawing(project.part.mesh_ply, "part.ply", options));
+        SEAM_TRY(part.edges, drawn_edges(drawing, a.edges, a.chain));
+    }
+    SEAM_TRY(part.mesh, mesh_from_ply(project.part.mesh_ply, a.file));
+    return part;
 }
 
 Expected<void> take_pose(const FitArguments& a, const FitReport& report, Answer& answer) {
@@ -132,12 +156,43 @@ Expected<Cloud> scan_cloud(const FitArguments& a, const std::string& source) {
     return read_cloud(source, a.unit);
 }
 
-Expected<Answer> fit_command(FitArguments& a) {
-    if (a.to != "drawing")
-        return usage_error(Text("a scan is fitted to the drawing, not to \"{}\"", a.to), "--to",
-                           "give --to drawing");
+Expected<void> check_arguments(const FitArguments& a) {
+    if (a.to != "drawing" && a.to != "edge")
+        return usage_error(Text("a scan is fitted to the drawing or to an edge, not to \"{}\"", a.to), "--to",
+                           "give --to drawing or --to edge");
+    if (a.to == "edge" && a.edges.empty())
+        return usage_error("no edge is named", "--edge", "`seamwright drawing` lists them");
+    if (a.to != "edge" && (!a.edges.empty() || a.chain))
+        return usage_error("an edge is given, but the scan is fitted to the drawing", "--edge",
+                           "give --to edge");
     if (a.take && a.file.empty())
         return usage_error("there is no project to take the pose into", "--take", "give FILE.seam");
+    return {};
+}
+
+// `ends` of a fit to edges: what its deviation is of.
+Expected<void> fit_to(const FitArguments& a, const Cloud& cloud, const Part& part, const Surface& surface,
+                      FitReport& report, Cloud& ends) {
+    if (a.to == "edge") {
+        SEAM_TRY(auto found, fit_edges(cloud, part.edges, surface, a.options));
+        report.fit = std::move(found.fit);
+        report.deviation = std::move(found.deviation);
+        report.normal_rms_mm = found.normal_rms_mm;
+        report.spacing_mm = found.spacing_mm;
+        report.edges = a.edges;
+        ends = std::move(found.ends);
+        return {};
+    }
+    SEAM_TRY(report.fit, fit_surface(cloud, surface, a.options));
+    if (report.fit.status != FitStatus::no_fit && report.fit.status != FitStatus::cancelled)
+        report.deviation = deviation_map(cloud, surface, report.fit.base_from_part,
+                                         {std::max(2 * report.fit.gate_mm, 0.005 * surface.size_mm()),
+                                          report.fit.noise_mm, 41, a.options.cancelled});
+    return {};
+}
+
+Expected<Answer> fit_command(FitArguments& a) {
+    SEAM_OK(check_arguments(a));
     if (!a.start.empty()) {
         SEAM_TRY(auto pose, read_pose_argument(a.start, "--start"));
         a.options.start = pose;
@@ -146,30 +201,24 @@ Expected<Answer> fit_command(FitArguments& a) {
     const std::string source = a.cloud.empty() ? a.scan : a.cloud;
     if (source.empty())
         return usage_error("there is nothing to fit", "fit", "give the scan: --scan SCAN.ply");
-    SEAM_TRY(auto mesh, drawing(a));
+    SEAM_TRY(auto part, part_to_fit(a));
     SEAM_TRY(auto cloud, scan_cloud(a, source));
-    const Surface surface(mesh);
+    const Surface surface(part.mesh);
     const auto stop = stop_on_signal();
     a.options.cancelled = [stop] { return stop.stop_requested(); };
     FitReport report;
     report.scan = source;
     report.part = a.mesh.empty() ? a.file : a.mesh;
-    auto fit = fit_surface(cloud, surface, a.options);
-    if (!fit) {
-        Error error = fit.error();
+    Cloud ends;
+    if (auto fitted = fit_to(a, cloud, part, surface, report, ends); !fitted) {
+        Error error = fitted.error();
         error.within(Text(source));
         return tl::unexpected(error);
     }
-    report.fit = std::move(*fit);
-    const bool placed = report.fit.status != FitStatus::no_fit && report.fit.status != FitStatus::cancelled;
-    if (placed)
-        report.deviation = deviation_map(cloud, surface, report.fit.base_from_part,
-                                         {std::max(2 * report.fit.gate_mm, 0.005 * surface.size_mm()),
-                                          report.fit.noise_mm, 41, a.options.cancelled});
     const bool ok = report.fit.status == FitStatus::ok;
     Answer answer{fit_json(report), fit_text(report), ok ? kExitOk : kExitVerdict};
     answer.json["taken"] = false;
-    SEAM_OK(write_reports(a, report, cloud, surface, answer));
+    SEAM_OK(write_reports(a, report, report.to_edges() ? ends : cloud, surface, answer));
     if (a.take && ok) SEAM_OK(take_pose(a, report, answer));
     return answer;
 }
@@ -178,14 +227,17 @@ Expected<Answer> fit_command(FitArguments& a) {
 
 void add_fit(CommandLine& line) {
     auto a = std::make_shared<FitArguments>();
-    CLI::App* command = line.add("fit",
-                                 "Where a part stands: its scan fitted to its drawing, with the sigma of "
-                                 "noise and of form, the deviation map, and a "
-                                 "refusal\nthat names the directions that a flat, round or symmetric part "
-                                 "leaves open. In a project the search begins "
-                                 "at its work object.\nExit 1 where the fit is refused.",
-                                 "seamwright fit --cloud scan.ply --mesh part.stl --report fit.html\n"
-                                 "  seamwright fit door_left.seam --scan door.ply --to drawing --take");
+    CLI::App* command =
+        line.add("fit",
+                 "Where a part stands: its scan fitted to its drawing, with the sigma of "
+                 "noise and of form, the deviation map, and a "
+                 "refusal\nthat names the directions that a flat, round or symmetric part "
+                 "leaves open. In a project the search begins "
+                 "at its work object.\nExit 1 where the fit is refused.",
+                 "seamwright fit --cloud scan.ply --mesh part.stl --report fit.html\n"
+                 "  seamwright fit door_left.seam --scan door.ply --to drawing --take\n"
+                 "  seamwright fit door_left.seam --scan rim.ply --mesh door.step --to edge --edge e12 "
+                 "--edge e40");
     command->add_option("file", a->file, "The project")->type_name("FILE.seam");
     add_sign_in(command);
     command
@@ -197,7 +249,13 @@ void add_fit(CommandLine& line) {
         ->add_option("--mesh", a->mesh,
                      "The drawing: STEP, IGES, STL, PLY, OBJ; of a project, instead of its own")
         ->type_name("FILE");
-    command->add_option("--to", a->to, "What the scan is fitted to: drawing")->capture_default_str();
+    command->add_option("--to", a->to, "What the scan is fitted to: drawing or edge")->capture_default_str();
+    command
+        ->add_option("--edge", a->edges,
+                     "With --to edge: an edge of the drawing where the scanned sheet ends; more than one "
+                     "close what one leaves open")
+        ->type_name("ID");
+    command->add_flag("--chain", a->chain, "With --edge: and the tangent edges that it goes on in");
     command->add_option("--unit", a->unit, "Of the files: mm or m")->check(CLI::IsMember({"mm", "m"}));
     command->add_option("--start", a->start, "Where it stands roughly, base_from_workobject")
         ->type_name("POSE");

@@ -10,8 +10,10 @@
 #include "app/studio/command_palette.h"
 #include "app/studio/main_window.h"
 #include "app/studio/studio.h"
+#include "widgets/dialogs/gap_dialog.h"
 #include "widgets/dialogs/path_dialog.h"
 #include "widgets/dialogs/program_dialog.h"
+#include "widgets/dialogs/record_dialog.h"
 #include "widgets/pages/run_page.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
@@ -155,6 +157,12 @@ void MainWindow::make_measure_menu() {
             show_step(Step::run);
             run_page_->measure(true);
         }));
+    run->addAction(action("gap_check", "measure", tr("Gap along a path..."), {}, [this] {
+        show_dialog("gap_dialog", [this] { return new GapDialog(desk_, this); });
+    }));
+    run->addAction(action("record_session", "save", tr("Record what the devices deliver..."), {}, [this] {
+        show_dialog("record_dialog", [this] { return new RecordDialog(desk_, this); });
+    }));
     run->addAction(action("jog", "robot", tr("Move the robot by hand"), QKeySequence("F8"),
                           [this] { views_.raise(views_.jog); }));
     run->addAction(action("cancel_work", "stop", tr("Cancel the measuring"), QKeySequence("Ctrl+."),

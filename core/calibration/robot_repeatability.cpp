@@ -1,8 +1,14 @@
 #include "core/calibration/robot_repeatability.h"
 
+#include <cmath>
+
 #include "core/geometry/pose.h"
 
 namespace seamwright {
+
+double place_sigma_mm(const RobotRepeatability& robot, double lever_mm) {
+    return std::hypot(robot.sigma_mm, robot.sigma_rad * lever_mm);
+}
 
 Expected<void> check_repeatability(const RobotRepeatability& robot) {
     constexpr double kMost_mm = 10, kMost_deg = 5;

@@ -13,6 +13,9 @@ struct RobotRepeatability {
     bool stated() const { return sigma_mm > 0 || sigma_rad > 0; }
 };
 
+// Of a point so far from the flange, along each axis (mm): an arrival's shift and what its turn moves there.
+double place_sigma_mm(const RobotRepeatability& robot, double lever_mm);
+
 // Error (input): negative, not finite, above 10 mm or 5 degrees.
 Expected<void> check_repeatability(const RobotRepeatability& robot);
 

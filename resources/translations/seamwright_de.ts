@@ -3741,6 +3741,14 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
 <context>
     <name>seamwright::MainWindow</name>
     <message>
+        <source>Record what the devices deliver...</source>
+        <translation>Aufzeichnen, was die Geräte liefern...</translation>
+    </message>
+    <message>
+        <source>Gap along a path...</source>
+        <translation>Spalt entlang einer Bahn...</translation>
+    </message>
+    <message>
         <source>Path corrected by a run...</source>
         <translation>Von einem Lauf korrigierter Pfad...</translation>
     </message>
@@ -5785,6 +5793,22 @@ ausgelassen</translation>
 <context>
     <name>seamwright::StationWorker</name>
     <message>
+        <source>Recording</source>
+        <translation>Aufzeichnung</translation>
+    </message>
+    <message>
+        <source>Along the gap</source>
+        <translation>Den Spalt entlang</translation>
+    </message>
+    <message>
+        <source>The gap was not measured.</source>
+        <translation>Der Spalt wurde nicht gemessen.</translation>
+    </message>
+    <message>
+        <source>Reading the recording</source>
+        <translation>Aufzeichnung wird gelesen</translation>
+    </message>
+    <message>
         <source>Connecting</source>
         <translation>Verbinden</translation>
     </message>
@@ -6700,6 +6724,303 @@ und %1 weitere</translation>
     <message>
         <source>%1 files written to %2</source>
         <translation>%1 Dateien nach %2 geschrieben</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::GapDialog</name>
+    <message>
+        <source>Gap along a path</source>
+        <translation>Spalt entlang einer Bahn</translation>
+    </message>
+    <message>
+        <source> mm</source>
+        <translation> mm</translation>
+    </message>
+    <message>
+        <source>Along the spots</source>
+        <translation>Entlang der Messstellen</translation>
+    </message>
+    <message>
+        <source>In this order, straight from one to the next: S1, S2, S3</source>
+        <translation>In dieser Reihenfolge, gerade von einer zur nächsten: S1, S2, S3</translation>
+    </message>
+    <message>
+        <source>Step</source>
+        <translation>Schritt</translation>
+    </message>
+    <message>
+        <source>Of the sensor&apos;s travel between two profiles</source>
+        <translation>Weg des Sensors zwischen zwei Profilen</translation>
+    </message>
+    <message>
+        <source>Drive along the gap...</source>
+        <translation>Den Spalt abfahren...</translation>
+    </message>
+    <message>
+        <source>The robot stops at every step; asks before it moves</source>
+        <translation>Der Roboter hält bei jedem Schritt; fragt, bevor er fährt</translation>
+    </message>
+    <message>
+        <source>From a recording...</source>
+        <translation>Aus einer Aufzeichnung...</translation>
+    </message>
+    <message>
+        <source>A capture that was recorded while the robot travelled</source>
+        <translation>Eine Aufzeichnung von der Fahrt des Roboters</translation>
+    </message>
+    <message>
+        <source>Nozzle</source>
+        <translation>Düse</translation>
+    </message>
+    <message>
+        <source>Its width where it enters the gap</source>
+        <translation>Ihre Breite, wo sie in den Spalt taucht</translation>
+    </message>
+    <message>
+        <source>Clearance</source>
+        <translation>Freiraum</translation>
+    </message>
+    <message>
+        <source>What must be left on either side</source>
+        <translation>Was auf jeder Seite bleiben muss</translation>
+    </message>
+    <message>
+        <source>left</source>
+        <translation>links</translation>
+    </message>
+    <message>
+        <source>right</source>
+        <translation>rechts</translation>
+    </message>
+    <message>
+        <source>Flush against the part on the</source>
+        <translation>Bündigkeit zum Teil</translation>
+    </message>
+    <message>
+        <source>Whose surface is the reference</source>
+        <translation>Wessen Oberfläche die Referenz ist</translation>
+    </message>
+    <message>
+        <source>Where</source>
+        <translation>Wo</translation>
+    </message>
+    <message>
+        <source>Verdict</source>
+        <translation>Urteil</translation>
+    </message>
+    <message>
+        <source>From, mm</source>
+        <translation>Von, mm</translation>
+    </message>
+    <message>
+        <source>To, mm</source>
+        <translation>Bis, mm</translation>
+    </message>
+    <message>
+        <source>Narrowest, mm</source>
+        <translation>Engste, mm</translation>
+    </message>
+    <message>
+        <source>Where the nozzle does not pass</source>
+        <translation>Wo die Düse nicht durchkommt</translation>
+    </message>
+    <message>
+        <source>Write...</source>
+        <translation>Schreiben...</translation>
+    </message>
+    <message>
+        <source>The report (.html) or every point as a table (.csv)</source>
+        <translation>Den Bericht (.html) oder jeden Punkt als Tabelle (.csv)</translation>
+    </message>
+    <message>
+        <source>Close</source>
+        <translation>Schließen</translation>
+    </message>
+    <message>
+        <source>Nothing is kept</source>
+        <translation>Nichts wird behalten</translation>
+    </message>
+    <message>
+        <source>%1 of %2 profiles</source>
+        <translation>%1 von %2 Profilen</translation>
+    </message>
+    <message>
+        <source>The robot now drives along %1. Is its way free?</source>
+        <translation>Der Roboter fährt jetzt %1 ab. Ist sein Weg frei?</translation>
+    </message>
+    <message>
+        <source>Recording</source>
+        <translation>Aufzeichnung</translation>
+    </message>
+    <message>
+        <source>Recordings (*.seam);;All files (*)</source>
+        <translation>Aufzeichnungen (*.seam);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Drive along the gap, or choose a recording.</source>
+        <translation>Den Spalt abfahren oder eine Aufzeichnung wählen.</translation>
+    </message>
+    <message>
+        <source>None of %1 profiles shows the gap.</source>
+        <translation>Keines von %1 Profilen zeigt den Spalt.</translation>
+    </message>
+    <message>
+        <source>%1 of %2 profiles measured along %3 mm; gap %4 to %5 mm, needed %6 mm with 3 sigma</source>
+        <translation>%1 von %2 Profilen gemessen auf %3 mm; Spalt %4 bis %5 mm, nötig %6 mm mit 3 Sigma</translation>
+    </message>
+    <message>
+        <source>The nozzle passes. %1</source>
+        <translation>Die Düse kommt durch. %1</translation>
+    </message>
+    <message>
+        <source>The nozzle does not pass everywhere. %1</source>
+        <translation>Die Düse kommt nicht überall durch. %1</translation>
+    </message>
+    <message>
+        <source>Report (*.html);;Points (*.csv)</source>
+        <translation>Bericht (*.html);;Punkte (*.csv)</translation>
+    </message>
+    <message>
+        <source>The file was not written.</source>
+        <translation>Die Datei wurde nicht geschrieben.</translation>
+    </message>
+    <message>
+        <source>Written to %1</source>
+        <translation>Geschrieben nach %1</translation>
+    </message>
+    <message>
+        <source>passes</source>
+        <translation>kommt durch</translation>
+    </message>
+    <message>
+        <source>doubtful</source>
+        <translation>zweifelhaft</translation>
+    </message>
+    <message>
+        <source>too narrow</source>
+        <translation>zu eng</translation>
+    </message>
+    <message>
+        <source>closed</source>
+        <translation>geschlossen</translation>
+    </message>
+    <message>
+        <source>not measured</source>
+        <translation>nicht gemessen</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::GapPlot</name>
+    <message>
+        <source>Width of the gap over the path</source>
+        <translation>Breite des Spalts über der Bahn</translation>
+    </message>
+    <message>
+        <source>Width with 3 sigma below it; dashed: what the nozzle needs</source>
+        <translation>Breite mit 3 Sigma darunter; gestrichelt: was die Düse braucht</translation>
+    </message>
+    <message>
+        <source>path, mm</source>
+        <translation>Bahn, mm</translation>
+    </message>
+    <message>
+        <source>width, mm</source>
+        <translation>Breite, mm</translation>
+    </message>
+    <message>
+        <source>width</source>
+        <translation>Breite</translation>
+    </message>
+    <message>
+        <source>width - 3 sigma</source>
+        <translation>Breite - 3 Sigma</translation>
+    </message>
+    <message>
+        <source>does not pass</source>
+        <translation>kommt nicht durch</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::RecordDialog</name>
+    <message>
+        <source>Record what the devices deliver</source>
+        <translation>Aufzeichnen, was die Geräte liefern</translation>
+    </message>
+    <message>
+        <source>Live profiles, teaching and runs go into the recording too, as long as it goes on. It is replayed as a sensor and a robot, and a gap or a path is judged from it later.</source>
+        <translation>Auch Live-Profile, Teachen und Läufe kommen in die Aufzeichnung, solange sie läuft. Sie wird als Sensor und Roboter wieder abgespielt, und ein Spalt oder eine Bahn wird später daraus beurteilt.</translation>
+    </message>
+    <message>
+        <source>Keep the raw images too</source>
+        <translation>Auch die Rohbilder behalten</translation>
+    </message>
+    <message>
+        <source>Of cameras: some MiB a frame; without them the profiles are kept</source>
+        <translation>Von Kameras: einige MiB je Bild; ohne sie bleiben die Profile</translation>
+    </message>
+    <message>
+        <source>Device</source>
+        <translation>Gerät</translation>
+    </message>
+    <message>
+        <source>Frames</source>
+        <translation>Bilder</translation>
+    </message>
+    <message>
+        <source>Damaged</source>
+        <translation>Beschädigt</translation>
+    </message>
+    <message>
+        <source>Lost</source>
+        <translation>Verloren</translation>
+    </message>
+    <message>
+        <source>Dropped</source>
+        <translation>Verworfen</translation>
+    </message>
+    <message>
+        <source>What is on the disk; dropped: the disk was too slow</source>
+        <translation>Was auf der Platte ist; verworfen: die Platte war zu langsam</translation>
+    </message>
+    <message>
+        <source>Record...</source>
+        <translation>Aufzeichnen...</translation>
+    </message>
+    <message>
+        <source>Asks for a file; the devices connect anew</source>
+        <translation>Fragt nach einer Datei; die Geräte werden neu verbunden</translation>
+    </message>
+    <message>
+        <source>Stop</source>
+        <translation>Beenden</translation>
+    </message>
+    <message>
+        <source>Ends the recording; the devices connect anew</source>
+        <translation>Beendet die Aufzeichnung; die Geräte werden neu verbunden</translation>
+    </message>
+    <message>
+        <source>Nothing is recorded.</source>
+        <translation>Es wird nichts aufgezeichnet.</translation>
+    </message>
+    <message>
+        <source>The recording is not whole.</source>
+        <translation>Die Aufzeichnung ist nicht vollständig.</translation>
+    </message>
+    <message>
+        <source>Recorded in %1, %2 MiB</source>
+        <translation>Aufgezeichnet in %1, %2 MiB</translation>
+    </message>
+    <message>
+        <source>Recording into %1, %2 MiB</source>
+        <translation>Aufzeichnung in %1, %2 MiB</translation>
+    </message>
+    <message>
+        <source>Recording</source>
+        <translation>Aufzeichnung</translation>
+    </message>
+    <message>
+        <source>Recordings (*.seam)</source>
+        <translation>Aufzeichnungen (*.seam)</translation>
     </message>
 </context>
 </TS>

@@ -22,6 +22,7 @@
 #include "projects/acceptance/study/live_study.h"
 #include "projects/calibrate/session/shot.h"
 #include "projects/confirm/confirm.h"
+#include "projects/panel/gap_check.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
 #include "projects/station/spot_light.h"
@@ -70,6 +71,8 @@ class StationWorker : public QObject {
 
     void connect_devices();
     void disconnect_devices();
+    // Everything that the devices deliver goes into this recording too (nullptr: no more); they connect anew.
+    void record_to(std::shared_ptr<Recorder> recorder);
     // `part_type`: of the part that stands there; empty where the project has no types.
     void measure(const std::string& part_id, bool push, bool keep_images, const std::string& part_type = {});
     void zero_shift(int runs, const std::string& part_type = {});
@@ -84,6 +87,9 @@ class StationWorker : public QObject {
     void teach(const Spot& draft, int repeats);
     void find_light(const Spot& spot);         // light_found() brings it
     void confirm(const std::string& spot_id);  // from the drawing; confirmed() brings what was found
+    // Stop by stop along the spots, or from a capture; gap_passed() brings it.
+    void drive_gap(const DrivenGapPass& options);
+    void read_gap(const std::filesystem::path& capture, const RecordedGapPass& options);
     void record_pass(const Spot& spot, double step_mm, const AlignmentOptions& options);
     // Robot standing still: its pose, the stripe, and with `board` a second image with the laser off, exposed
     // for the surroundings; one sensor after another. An empty robot_id asks no robot.
@@ -119,6 +125,7 @@ class StationWorker : public QObject {
     void light_found(std::shared_ptr<const seamwright::LightOfSpot> found);
     void confirmed(std::shared_ptr<const seamwright::Confirmation> confirmation);
     void passed(std::shared_ptr<const seamwright::JudgedPass> pass);
+    void gap_passed(std::shared_ptr<const seamwright::GapPass> pass);
     // What failed is in them: who asked for it says it.
     void shots_taken(std::shared_ptr<const seamwright::CalibrationShots> shots);
 

@@ -1,4 +1,4 @@
-// The studies of the acceptance on the Station's thread.
+// Studies, confirmations and passes along a gap on the Station's thread.
 
 #include "projects/acceptance/simulated_parts.h"
 #include "widgets/shown_text.h"
@@ -98,6 +98,32 @@ void StationWorker::confirm(const std::string& spot_id) {
             emit failed(shown_error(tr("The spot was not confirmed."), found.error()));
         else
             emit confirmed(std::make_shared<const Confirmation>(std::move(*found)));
+    });
+}
+
+void StationWorker::record_to(std::shared_ptr<Recorder> recorder) {
+    post(tr("Recording"), [=](Station& station, const std::stop_token&) { station.record_to(recorder); });
+    connect_devices();
+}
+
+void StationWorker::drive_gap(const DrivenGapPass& asked) {
+    post(tr("Along the gap"), [=, this](Station& station, const std::stop_token& cancelled) {
+        DrivenGapPass options = asked;
+        options.cancel = cancelled;
+        options.progress = progress_sink();
+        auto pass = gap_pass(station, options);
+        if (!pass) return emit failed(shown_error(tr("The gap was not measured."), pass.error()));
+        emit gap_passed(std::make_shared<const GapPass>(std::move(*pass)));
+    });
+}
+
+void StationWorker::read_gap(const std::filesystem::path& capture, const RecordedGapPass& options) {
+    post(tr("Reading the recording"), [=, this](Station& station, const std::stop_token&) {
+        auto reader = CaptureReader::open(capture);
+        auto pass = reader ? gap_pass(station.project(), *reader, options)
+                           : Expected<GapPass>(tl::unexpected(reader.error()));
+        if (!pass) return emit failed(shown_error(tr("The gap was not measured."), pass.error()));
+        emit gap_passed(std::make_shared<const GapPass>(std::move(*pass)));
     });
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/calibration/camera/camera.h"
 #include "core/calibration/pose_set.h"
+#include "core/calibration/statistics.h"
 #include "core/profile/units.h"
 
 namespace seamwright {
@@ -28,6 +29,21 @@ double residual_px(const CameraModel& camera, const Pose& pose, const LaserPair&
         .norm();
 }
 
+// Variance of one coordinate of a pixel from that of its place in the laser plane, mean over the pairs in use.
+double variance_of_places(const CameraModel& camera, const Pose& pose, const CameraPoints& view,
+                          double place_sigma_mm) {
+    constexpr double kStep_mm = 1e-3;
+    double sum = 0;
+    for (const auto& at : view.object_mm)
+        for (const int axis : {0, 2}) {
+            const Eigen::Vector3d step = kStep_mm * Eigen::Vector3d::Unit(axis);
+            sum +=
+                ((camera.project(pose * (at + step)) - camera.project(pose * (at - step))) / (2 * kStep_mm))
+                    .squaredNorm();
+        }
+    return place_sigma_mm * place_sigma_mm * sum / (2 * static_cast<double>(view.object_mm.size()));
+}
+
 // Width of the points across their main direction relative to along it.
 double flatness(const CameraPoints& view) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -42,7 +58,8 @@ double flatness(const CameraPoints& view) {
 
 Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
                                                  const std::vector<LaserPair>& pairs,
-                                                 const std::vector<std::string>& exclude) {
+                                                 const std::vector<std::string>& exclude,
+                                                 double place_sigma_mm) {
     std::vector<std::string> ids;
     for (const auto& p : pairs) ids.push_back(p.id);
     SEAM_OK(check_ids(ids, exclude, "pairs"));
@@ -107,7 +124,11 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     const CameraPoints view = view_of(pairs, used);
     if (flatness(view) < 0.01) return undetermined("the points lie on one line of the laser plane");
     result.camera_from_laser = solved->camera_from_target;
-    result.covariance = solved->covariance;
+    const double freedom = std::max(1.0, 2.0 * count() - 6);
+    const double student = student_quantile(0.975, freedom) / normal_quantile(0.975);
+    const double seen = solved->rms_px * solved->rms_px * count() / freedom;
+    const double stated = variance_of_places(camera, solved->camera_from_target, view, place_sigma_mm);
+    result.covariance = solved->covariance * std::max(student * student, seen > 0 ? stated / seen : 0.0);
     result.rms_px = solved->rms_px;
     add_pose(report, result.camera_from_laser);
     state_covariance(report, result.covariance);

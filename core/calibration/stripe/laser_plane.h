@@ -5,8 +5,9 @@
 // start value is asked for: the profile points lie in one plane, so the homography to the image decomposes
 // into the pose (both mirror poses are tried).
 //
-// Noise model: pixels independent, one sigma, estimated. Degenerate: points on one line (the pose may turn
-// about it).
+// Noise model: pixels independent, one sigma, estimated from the redundancy (the covariance is as wide as a normal one
+// that holds 95 % has to be); where the places' own sigma is stated and says more, as much as that gives in the image.
+// Degenerate: points on one line (the pose may turn about it).
 
 #include <string>
 #include <vector>
@@ -32,9 +33,11 @@ struct LaserPlaneResult {
 
 // At least 4 pairs (10 and more advised). A pair that the others contradict is named and left out (from 6
 // pairs on). Error: fewer than 4 pairs, NaN, unknown or double ids. Verdict undetermined: points on one line,
-// sigma beyond 5 mm or 2 degrees.
+// sigma beyond 5 mm or 2 degrees. place_sigma_mm: of laser_mm along each axis, independent from pair to pair (a stage's
+// or a robot's arrivals); 0: not stated.
 Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
                                                  const std::vector<LaserPair>& pairs,
-                                                 const std::vector<std::string>& exclude);
+                                                 const std::vector<std::string>& exclude,
+                                                 double place_sigma_mm = 0);
 
 }  // namespace seamwright

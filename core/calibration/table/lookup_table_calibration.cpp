@@ -21,7 +21,6 @@ using namespace lookup_table;
 using Eigen::Index;
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
-using Eigen::VectorXd;
 
 namespace {
 
@@ -112,10 +111,10 @@ void describe(const SmoothMap& map, const LookupTable& t, const Vector2d& middle
     for (const Vector2d& corner : {Vector2d(-1, -1), Vector2d(1, -1), Vector2d(1, 1), Vector2d(-1, 1)})
         pick([&](const Vector2d& p) { return -(p - middle).dot(corner); });
     const auto m = static_cast<Index>(places.size());
-    std::vector<VectorXd> rows;
+    std::vector<SmoothMap::Known> known;
     std::vector<Matrix2d> slopes;
     for (const auto& p : places) {
-        rows.push_back(map.spread_row(p));
+        known.push_back(map.known(p));
         slopes.push_back(map.homography_slope(p));
         const Vector2d xz = map.at(p);
         report.parameters.push_back({fmt::format("x({:g},{:g})", p.x(), p.y()), xz.x(), "mm", 0});
@@ -125,8 +124,8 @@ void describe(const SmoothMap& map, const LookupTable& t, const Vector2d& middle
     for (Index a = 0; a < m; ++a)
         for (Index b = 0; b < m; ++b)
             report.covariance.block<2, 2>(2 * a, 2 * b) =
-                rows[static_cast<std::size_t>(a)].dot(rows[static_cast<std::size_t>(b)]) *
-                slopes[static_cast<std::size_t>(a)] * map.noise() *
+                slopes[static_cast<std::size_t>(a)] *
+                known[static_cast<std::size_t>(a)].with(known[static_cast<std::size_t>(b)], map.noise()) *
                 slopes[static_cast<std::size_t>(b)].transpose();
     finish_statistics(report);
 }
@@ -271,7 +270,8 @@ void state_cover(const SmoothMap& map, LookupTableResult& result) {
         const Vector2d p(static_cast<double>(k % columns) * table.step_u,
                          static_cast<double>(k / columns) * table.step_v);
         const Matrix2d carry = map.homography_slope(p);
-        const double v = map.spread_row(p).squaredNorm() * (carry * map.noise() * carry.transpose()).trace();
+        const auto known = map.known(p);
+        const double v = (carry * known.with(known, map.noise()) * carry.transpose()).trace();
         variance += v;
         worst_variance = std::max(worst_variance, v);
         ++rows;
@@ -386,6 +386,7 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
     if (Text reason = fit_agreeing(pairs, allowed, fitted); !reason.empty()) return undetermined(reason);
     const auto& pixels = fitted.samples.pixel;
     const Support support(pixels);
+    fitted.map.state_places(fitted.samples, options.place_sigma_mm);
     state_noise(fitted, result);
     const double step = options.step_px != 0 ? options.step_px
                                              : suitable_step(fitted, support, width, height, result.noise_mm);

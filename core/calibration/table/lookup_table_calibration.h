@@ -5,16 +5,17 @@
 //
 // Map: (x, z) = H(q + p(q) + s(q)), q = (u, v). H: homography, what a plane seen by a pinhole gives exactly.
 // p: polynomial of total degree 1 to 5 in px, the lens as far as it is smooth over the field. s: thin-plate
-// spline on knots spread over the samples, what is left locally, damped by a penalty on its bending. Degree
-// and penalty are those of the smallest leave-one-out error, so that noise is averaged and true bumps stay.
-// Noise model: independent noise of the pixels, of one covariance over the image.
+// spline on knots spread over the samples, what is left locally, damped by a penalty on its bending.
+// Noise model: independent noise of the pixels, of one covariance over the image, estimated from the redundancy; where
+// the places' own sigma is stated and says more, as much as that gives in the image.
 //
 // A node is a hole where the samples do not support it: outside their convex hull by more than half a step
 // (or half the samples' spacing, when smaller), farther than two mean spacings from the nearest sample, on
 // the far side of H's horizon, or where the map folds over.
 //
-// Sigmas of the map are those of the chosen degree and penalty; the choice itself is not part of them, so
-// that 95 % intervals cover about 90 %.
+// Degrees and penalties that the pairs do not speak against are averaged by what they predict of pairs they have not
+// seen (model averaging, Buckland, Burnham and Augustin 1997); how far they lie apart is part of the sigmas, and so is
+// what few pairs leave open of the noise.
 //
 // Degenerate: pairs on one line of the image or of the laser plane. A target's position error is taken as
 // noise; an error common to all (a scale, a tilted stage) cannot be seen.
@@ -35,6 +36,7 @@ struct LookupTableOptions {
     // px between nodes; 0: the coarsest of 32, 16, 8, 4, 2 whose interpolation adds less than a fifth of the
     // noise
     double step_px = 0;
+    double place_sigma_mm = 0;  // of laser_mm along each axis, independent from pair to pair; 0: not stated
 };
 
 struct LookupTableResult {
@@ -49,7 +51,7 @@ struct LookupTableResult {
     double noise_mm = 0;        // the same as a distance in the laser plane, root mean square over the pairs
     double interpolation_mm = 0;  // rms difference of the table and the smooth map in the middle of the cells
     double map_sigma_mm = 0, map_sigma_worst_mm = 0;  // sigma of a node's position: rms and worst
-    int degree = 0;                                   // of the polynomial
+    int degree = 0;                                   // of the polynomial that predicts best
     double effective_parameters = 0;                  // numbers spent on each of u and v
     // parameters: x and z (mm) of the table at the middle of the samples and at four nodes towards its
     // corners, with the covariance of the map. Per pose: rms_mm and rms_px of each pair.

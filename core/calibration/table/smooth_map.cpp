@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 
 #include "core/calibration/camera/camera.h"
+#include "core/calibration/statistics.h"
 #include "core/geometry/decompositions.h"
 #include "core/numbers.h"
 
@@ -17,11 +18,12 @@ namespace {
 constexpr Index kMostKnots = 120;
 constexpr Index kManySamples = 40;  // from here on degrees below three only bend the map
 constexpr double kMostTerms =
-    0.6;  // a term of the polynomial for fewer than this many samples each fits noise
+    0.67;  // a term of the polynomial for fewer than this many samples each fits noise
 constexpr double kMostFreedom = 0.8;     // of the samples, with the spline
 constexpr int kStiffnessSteps = 22;      // half a decade each
 constexpr double kSmallestBend = 1e-10;  // of the largest: the penalty's null space by rounding
 constexpr double kLeastRank = 1e-9;      // of the polynomial's triangle
+constexpr double kLeastWeight = 0.01;    // of the best candidate's
 }  // namespace
 
 Samples chosen(const std::vector<LaserPair>& pairs, const std::vector<char>& used) {
@@ -134,46 +136,120 @@ struct SmoothMap::Modes {
     }
 };
 
-// The steps of stiffness at one degree; keeps the one with the least leave-one-out error below `best`.
-void SmoothMap::try_stiffnesses(const Modes& m, int degree, const MatrixXd& transform, double& best) {
+// Every step of stiffness at the last of degrees_ is a candidate.
+void SmoothMap::try_stiffnesses(const Modes& m, const MatrixXd& transform) {
     const Index n = m.flat.rows();
     for (int step = -1; step <= m.last_step(); ++step) {
         const VectorXd inverse = m.inverse_at(step);
-        MatrixXd residual = m.flat;
-        VectorXd leverage = m.own;
-        double effective = static_cast<double>(m.q.cols());
+        Candidate c;
+        c.degree = degrees_.size() - 1;
+        c.residual = m.flat;
+        c.leverage = m.own;
+        c.effective = static_cast<double>(m.q.cols());
         if (step >= 0) {
-            residual -= m.modes * (inverse.asDiagonal() * m.scores);
-            leverage += m.squares * inverse;
-            effective += m.power.dot(inverse);
+            c.residual -= m.modes * (inverse.asDiagonal() * m.scores);
+            c.leverage += m.squares * inverse;
+            c.effective += m.power.dot(inverse);
         }
-        if (!(effective < kMostFreedom * static_cast<double>(n))) break;
-        double error = 0;
+        if (!(c.effective < kMostFreedom * static_cast<double>(n))) break;
         for (Index i = 0; i < n; ++i) {
-            const double rest = std::max(1 - leverage(i), 1e-6);
-            error += residual.row(i).squaredNorm() / (rest * rest);
+            const double rest = std::max(1 - c.leverage(i), 1e-6);
+            c.error += c.residual.row(i).squaredNorm() / (rest * rest);
         }
-        if (!(error < best)) continue;
-        best = error;
-        degree_ = degree;
-        effective_ = effective;
-        residual_ = residual;
-        leverage_ = leverage;
-        r_ = m.r;
+        if (!std::isfinite(c.error)) continue;
         MatrixXd right = m.qy;
         if (step >= 0) {
             const MatrixXd g = inverse.asDiagonal() * m.scores;
-            bend_ = transform * (m.vectors * g);
+            c.bend = transform * (m.vectors * g);
             right -= m.mixed * (m.vectors * g);
-            rotate_ = transform * m.vectors;
-            cross_ = m.mixed * m.vectors;
-            shrink_ = inverse.cwiseSqrt();
+            c.shrink = inverse.cwiseSqrt();
         } else {
-            shrink_.resize(0);
-            bend_ = MatrixXd::Zero(static_cast<Index>(knots_.size()), 2);
+            c.bend = MatrixXd::Zero(static_cast<Index>(knots_.size()), 2);
         }
-        poly_ = m.r.triangularView<Eigen::Upper>().solve(right);
+        c.poly = m.r.triangularView<Eigen::Upper>().solve(right);
+        candidates_.push_back(std::move(c));
     }
+}
+
+// The mean of the candidates that the pairs do not speak against. Their weights: what each predicts of pairs it has not
+// seen, as the likelihood of two numbers a pair.
+void SmoothMap::average() {
+    const double n = static_cast<double>(candidates_.front().residual.rows());
+    const auto best =
+        std::min_element(candidates_.begin(), candidates_.end(),
+                         [](const Candidate& a, const Candidate& b) { return a.error < b.error; });
+    degree_ = degrees_[best->degree].degree;
+    const double least = std::max(best->error, 1e-300);
+    for (Candidate& c : candidates_) c.weight = std::pow(least / std::max(c.error, least), 0.5 * n);
+    std::erase_if(candidates_, [](const Candidate& c) { return c.weight < kLeastWeight; });
+    double all = 0;
+    for (const Candidate& c : candidates_) all += c.weight;
+    const auto knots = static_cast<Index>(knots_.size());
+    poly_ = MatrixXd::Zero(terms(degrees_.back().degree), 2);
+    bend_ = MatrixXd::Zero(knots, 2);
+    residual_ = MatrixXd::Zero(candidates_.front().residual.rows(), 2);
+    leverage_ = VectorXd::Zero(residual_.rows());
+    noise_.setZero();
+    effective_ = 0;
+    for (Candidate& c : candidates_) {
+        c.weight /= all;
+        poly_.topRows(c.poly.rows()) += c.weight * c.poly;
+        bend_ += c.weight * c.bend;
+        residual_ += c.weight * c.residual;
+        leverage_ += c.weight * c.leverage;
+        effective_ += c.weight * c.effective;
+        noise_ += c.weight / std::max(1.0, n - c.effective) * (c.residual.transpose() * c.residual);
+    }
+    const double student = student_quantile(0.975, std::max(1.0, 2 * freedom())) / normal_quantile(0.975);
+    noise_ *= student * student;
+    for (Candidate& c : candidates_) c.residual.resize(0, 0);
+}
+
+void SmoothMap::state_places(const Samples& s, double sigma_mm) {
+    if (!(sigma_mm > 0)) return;
+    double stated = 0;
+    for (const Vector2d& p : s.pixel)
+        stated += sigma_mm * sigma_mm * homography_slope(p).inverse().squaredNorm() /
+                  static_cast<double>(s.pixel.size());
+    if (!(stated > noise_.trace())) return;
+    if (noise_.trace() > 0)
+        noise_ *= stated / noise_.trace();
+    else
+        noise_ = stated / 2 * Eigen::Matrix2d::Identity();
+}
+
+SmoothMap::Known SmoothMap::known(const Vector2d& pixel) const {
+    const Vector2d c = (pixel - mean_) / scale_;
+    const Eigen::RowVectorXd powers = monomials(c, degrees_.back().degree), kernels = kernel(c);
+    const Vector2d mean = (powers * poly_ + kernels * bend_).transpose();
+    Known known;
+    known.apart.resize(2, static_cast<Index>(candidates_.size()));
+    std::vector<VectorXd> flat(degrees_.size()),
+        bent(degrees_.size());  // each degree's, made when first asked for
+    Index length = 0;
+    for (const Candidate& k : candidates_) length += k.poly.rows() + k.shrink.size();
+    known.row.resize(length);
+    Index at = 0;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+        const Candidate& k = candidates_[i];
+        const Degree& d = degrees_[k.degree];
+        const double root = std::sqrt(k.weight);
+        VectorXd& row = flat[k.degree];
+        if (row.size() == 0)
+            row =
+                d.r.transpose().triangularView<Eigen::Lower>().solve(powers.head(k.poly.rows()).transpose());
+        known.row.segment(at, row.size()) = root * row;
+        at += row.size();
+        if (k.shrink.size() > 0) {
+            VectorXd& modes = bent[k.degree];
+            if (modes.size() == 0) modes = (kernels * d.rotate).transpose() - d.cross.transpose() * row;
+            known.row.segment(at, modes.size()) = root * modes.cwiseProduct(k.shrink);
+            at += modes.size();
+        }
+        known.apart.col(static_cast<Index>(i)) =
+            root * ((powers.head(k.poly.rows()) * k.poly + kernels * k.bend).transpose() - mean);
+    }
+    return known;
 }
 
 bool SmoothMap::fit(const Samples& s, int least_degree, int most_degree) {
@@ -186,7 +262,7 @@ bool SmoothMap::fit(const Samples& s, int least_degree, int most_degree) {
 
     // Every lens bends to the third degree: a lower one saves noise only where samples are few.
     if (n >= kManySamples) least_degree = std::max(least_degree, std::min(3, most_degree));
-    double best = kInfinity;
+    degrees_.clear(), candidates_.clear();
     for (int degree = least_degree; degree <= most_degree; ++degree) {
         const Index m = terms(degree);
         if (degree > 1 && static_cast<double>(m) > kMostTerms * static_cast<double>(n)) break;
@@ -196,11 +272,15 @@ bool SmoothMap::fit(const Samples& s, int least_degree, int most_degree) {
         const MatrixXd q = qr.householderQ() * MatrixXd::Identity(n, m);
         const MatrixXd r = qr.matrixQR().topRows(m).triangularView<Eigen::Upper>();
         if (!(r.diagonal().cwiseAbs().minCoeff() > kLeastRank * r.diagonal().cwiseAbs().maxCoeff())) break;
-        try_stiffnesses(Modes(q, r, y, columns), degree, transform, best);
+        const Modes modes(q, r, y, columns);
+        degrees_.push_back({degree, r, {}, {}});
+        if (columns.size() > 0)
+            degrees_.back().cross = modes.mixed * modes.vectors,
+            degrees_.back().rotate = transform * modes.vectors;
+        try_stiffnesses(modes, transform);
     }
-    if (!std::isfinite(best)) return false;
-    if (shrink_.size() == 0) knots_.clear();
-    noise_ = residual_.transpose() * residual_ / std::max(1.0, freedom());
+    if (candidates_.empty()) return false;
+    average();
     return poly_.allFinite() && noise_.allFinite();
 }
 

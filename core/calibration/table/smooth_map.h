@@ -52,19 +52,21 @@ class SmoothMap {
         if (!(q.z() * inverse_side_ > 0)) return {kNaN, kNaN};
         return q.hnormalized() - corrected(pixel);
     }
-    // Row whose products are the covariance of the map between two places, in units of noise().
-    Eigen::VectorXd spread_row(const Eigen::Vector2d& p) const {
-        const Eigen::Vector2d c = (p - mean_) / scale_;
-        const Eigen::VectorXd r =
-            r_.transpose().triangularView<Eigen::Lower>().solve(monomials(c, degree_).transpose());
-        Eigen::VectorXd out(r.size() + shrink_.size());
-        out.head(r.size()) = r;
-        if (shrink_.size() > 0)
-            out.tail(shrink_.size()) =
-                ((kernel(c) * rotate_).transpose() - cross_.transpose() * r).cwiseProduct(shrink_);
-        return out;
-    }
-    const Eigen::Matrix2d& noise() const { return noise_; }  // covariance of a pair's miss(), px^2
+    // What the map is known to at some places, each as seen through the candidates that were averaged: covariance of
+    // the map (corrected px, px^2) between two places, noise and choice together.
+    struct Known {
+        Eigen::VectorXd row;  // products of two rows, in units of noise()
+        Eigen::Matrix2Xd
+            apart;  // how far the candidates lie from their mean, by the root of their weight, px
+        Eigen::Matrix2d with(const Known& other, const Eigen::Matrix2d& noise) const {
+            return row.dot(other.row) * noise + apart * other.apart.transpose();
+        }
+    };
+    Known known(const Eigen::Vector2d& pixel) const;
+    // The noise is at least what places of this sigma (mm along each axis) give in corrected px.
+    void state_places(const Samples& s, double sigma_mm);
+    // Covariance of a pair's miss(), px^2, from the redundancy, as wide as a normal one that holds 95 % has to be.
+    const Eigen::Matrix2d& noise() const { return noise_; }
     // Residual over sqrt(1 - leverage) as a square in units of the noise, and the leave-one-out error in px.
     double studentised(std::size_t i, const Eigen::Matrix2d& noise_inverse) const {
         const auto k = static_cast<Eigen::Index>(i);
@@ -75,7 +77,7 @@ class SmoothMap {
         const auto k = static_cast<Eigen::Index>(i);
         return residual_.row(k).transpose() / std::max(1 - leverage_(k), 1e-9);
     }
-    int degree() const { return degree_; }
+    int degree() const { return degree_; }  // of the candidate that predicts best
     double effective() const { return effective_; }
     double freedom() const { return static_cast<double>(residual_.rows()) - effective_; }
 
@@ -85,9 +87,23 @@ class SmoothMap {
     Eigen::Matrix3d h_ = Eigen::Matrix3d::Identity(), inverse_ = Eigen::Matrix3d::Identity();
     int degree_ = 0;
     std::vector<Eigen::Vector2d> knots_;
-    Eigen::MatrixXd poly_, bend_;         // coefficients of u and v
-    Eigen::MatrixXd r_, cross_, rotate_;  // of spread_row()
-    Eigen::VectorXd shrink_;
+    Eigen::MatrixXd poly_, bend_;  // coefficients of u and v, of the mean of the candidates
+    // One degree: what known() needs of its polynomial and of the spline's modes.
+    struct Degree {
+        int degree = 0;
+        Eigen::MatrixXd r, cross, rotate;
+    };
+    // One stiffness at one degree.
+    struct Candidate {
+        std::size_t degree = 0;  // of degrees_
+        double error = 0;        // sum of the squared leave-one-out errors, px^2
+        double weight = 0;       // relative likelihood; all sum to 1
+        double effective = 0;
+        Eigen::MatrixXd poly, bend, residual;
+        Eigen::VectorXd shrink, leverage;
+    };
+    std::vector<Degree> degrees_;
+    std::vector<Candidate> candidates_;
     Eigen::MatrixXd residual_;
     Eigen::VectorXd leverage_;
     Eigen::Matrix2d noise_ = Eigen::Matrix2d::Zero();
@@ -115,7 +131,7 @@ class SmoothMap {
     }
     Eigen::Vector2d corrected(const Eigen::Vector2d& pixel) const {
         const Eigen::Vector2d c = (pixel - mean_) / scale_;
-        Eigen::Vector2d out = pixel + (monomials(c, degree_) * poly_).transpose();
+        Eigen::Vector2d out = pixel + (monomials(c, degrees_.back().degree) * poly_).transpose();
         if (!knots_.empty()) out += (kernel(c) * bend_).transpose();
         return out;
     }
@@ -124,7 +140,8 @@ class SmoothMap {
     bool spline_columns(const std::vector<Eigen::Vector2d>& places, Eigen::MatrixXd& columns,
                         Eigen::MatrixXd& transform) const;
     struct Modes;
-    void try_stiffnesses(const Modes& m, int degree, const Eigen::MatrixXd& transform, double& best);
+    void try_stiffnesses(const Modes& m, const Eigen::MatrixXd& transform);
+    void average();
 };
 
 }  // namespace seamwright::lookup_table

@@ -137,13 +137,13 @@ bool fit_without_wrong(const std::vector<LaserPair>& pairs, const std::vector<ch
         // A pair that the clean map predicts was wronged by its wrong neighbours.
         bool back = false;
         const double n = static_cast<double>(std::count(used.begin(), used.end(), 1));
-        const Matrix2d inverse = invertible(map.noise());
         for (std::size_t i = 0; round < 3 && i < pairs.size(); ++i) {
             if (!allowed[i] || used[i]) continue;
             const Vector2d e = map.miss(pairs[i].pixel, pairs[i].laser_mm);
             if (!e.allFinite()) continue;
-            const double variance = 1 + map.spread_row(pairs[i].pixel).squaredNorm();
-            if (e.dot(inverse * e) / variance / 2 < largest_limit(n, std::max(1.0, map.freedom() - 1)) ||
+            const auto known = map.known(pairs[i].pixel);
+            const Matrix2d expected = map.noise() + known.with(known, map.noise());
+            if (e.dot(invertible(expected) * e) / 2 < largest_limit(n, std::max(1.0, map.freedom() - 1)) ||
                 e.norm() < kHarmless_px)
                 used[i] = 1, back = true;
         }

@@ -1,4 +1,5 @@
-// {"camera":{fx,fy,cx,cy,k1,k2,..},"pairs":[{"id"?,"pixel":[u,v],"laser":[x,z]}]} ->
+// {"camera":{fx,fy,cx,cy,k1,k2,..},"pairs":[{"id"?,"pixel":[u,v],"laser":[x,z]}],
+//  "robot":{"sigma_mm","sigma_deg"?,"lever_mm"?}?} ->
 // {"status","camera" (as given),"camera_from_laser","rms_px","sigma","covariance_pose",...}
 
 #include "core/calibration/stripe/laser_plane.h"
@@ -20,7 +21,8 @@ Expected<CalibrationSolution> solve_laser_plane(const json& data, const Excluded
     SEAM_TRY(auto camera_field, json_field(data, "camera", ""));
     SEAM_TRY(auto camera, parse_camera(*camera_field, "camera"));
     SEAM_TRY(auto pairs, parse_laser_pairs(data));
-    SEAM_TRY(auto solved, calibrate_laser_plane(camera, pairs, exclude));
+    SEAM_TRY(const double place_mm, place_sigma_of(data));
+    SEAM_TRY(auto solved, calibrate_laser_plane(camera, pairs, exclude, place_mm));
 
     CalibrationSolution solution;
     json& result = solution.document;
@@ -44,7 +46,7 @@ json laser_plane_example() {
 Expected<json> prepare_laser_plane(json settings, const Calibration* base, const std::vector<Calibration>&) {
     if (!settings.contains("camera") && base && base->model)
         settings["camera"] = camera_json(base->model->camera);
-    return settings;
+    return base ? with_lever(std::move(settings), base->flange_from_sensor) : settings;
 }
 
 }  // namespace
@@ -55,7 +57,9 @@ CalibrationMethod laser_plane_method() {
     m.help = "Laser plane in the camera from a triangular body's apexes";
     m.usage = "pairs.json";
     m.layout = R"({"camera":{"fx","fy","cx","cy","k1"?,"k2"?,"p1"?,"p2"?,"k3"?,"width"?,"height"?},
-   "pairs":[{"id"?,"pixel":[u,v],"laser":[x,z]},..]}   px, mm)";
+   "pairs":[{"id"?,"pixel":[u,v],"laser":[x,z]},..],
+   "robot":{"sigma_mm","sigma_deg"?,"lever_mm"?}?}   px, mm)";
+    m.repeatability = true;
     m.example = laser_plane_example;
     m.solve = solve_laser_plane;
     m.entries = "pairs";

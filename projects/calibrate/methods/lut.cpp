@@ -1,4 +1,4 @@
-// {"size":[w,h],"step_px"?,"pairs":[{"id"?,"pixel":[u,v],"laser":[x,z]}]} ->
+// {"size":[w,h],"step_px"?,"pairs":[{"id"?,"pixel":[u,v],"laser":[x,z]}],"robot":{"sigma_mm","sigma_deg"?,"lever_mm"?}?} ->
 // {"status","table":{"u0","v0","step_u","step_v","columns","rows","holes"},"covered_share","forward_rms_mm",
 //     "forward_max_mm","backward_rms_px","backward_max_px","unsupported_pairs","noise_px","noise_mm",
 //     "interpolation_mm","sigma":{"rms_mm","worst_mm"},"wrong_pairs":[id,..],"table_file",...}
@@ -26,6 +26,7 @@ Expected<CalibrationSolution> solve_lut(const json& data, const ExcludedIds& exc
         options.step_px = step;
     }
     SEAM_TRY(auto pairs, parse_laser_pairs(data));
+    SEAM_TRY(options.place_sigma_mm, place_sigma_of(data));
     SEAM_TRY(auto solved, calibrate_lookup_table(size.first, size.second, pairs, options));
 
     CalibrationSolution solution;
@@ -70,6 +71,10 @@ Expected<CalibrationSolution> solve_lut(const json& data, const ExcludedIds& exc
     return solution;
 }
 
+Expected<json> prepare_lut(json settings, const Calibration* base, const std::vector<Calibration>&) {
+    return base ? with_lever(std::move(settings), base->flange_from_sensor) : settings;
+}
+
 json lut_example() {
     return {{"size", {example::kWidth, example::kHeight}}, {"pairs", example::laser_pairs()}};
 }
@@ -81,9 +86,11 @@ CalibrationMethod lut_method() {
     m.id = "lut";
     m.help = "Look-up table pixel to millimetre from known target positions";
     m.usage = "pairs.json --table table.lut";
-    m.layout = R"({"size":[W,H],"step_px"?,"pairs":[{"id"?,"pixel":[u,v],"laser":[x,z]},..]}   px, mm)";
+    m.layout = R"({"size":[W,H],"step_px"?,"pairs":[{"id"?,"pixel":[u,v],"laser":[x,z]},..],
+   "robot":{"sigma_mm","sigma_deg"?,"lever_mm"?}?}   px, mm)";
     m.example = lut_example;
-    m.table = true;
+    m.table = m.repeatability = true;
+    m.prepare = prepare_lut;
     m.solve = solve_lut;
     m.entries = "pairs";
     m.capture = CaptureKind::apex;

@@ -1,4 +1,4 @@
-// The deeds with a window of their own, on the demo project: the path corrected by a run, the controller's program.
+// The deeds with a window of their own: the path corrected by a run, the controller's program, the gap along a path.
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,12 @@
 #include "app/studio/studio.h"
 #include "devices/exchange/tables/path_csv.h"
 #include "devices/simulated/scene/door.h"
+#include "projects/reuse/simulated_truth.h"
 #include "tests/app/studio/person.h"
+#include "widgets/dialogs/gap_dialog.h"
 #include "widgets/dialogs/path_dialog.h"
 #include "widgets/dialogs/program_dialog.h"
+#include "widgets/dialogs/record_dialog.h"
 
 namespace seamwright {
 namespace {
@@ -157,6 +160,89 @@ TEST_F(Dialogs, TheControllersProgramIsWrittenForTheProjectOnTheScreen) {
     EXPECT_FALSE(write->isEnabled()) << "no spot, no program";
     EXPECT_FALSE(word(*dialog, "program_verdict").isEmpty());
     dialog->grab().save(QString(SEAMWRIGHT_SCREENS) + "/dialog_program.png");
+}
+
+// Two sheets that come together to 3 mm in the middle: the plot, the stretch by its spots, and the nozzle that fits once it
+// is smaller; nothing is measured again for that.
+TEST_F(Dialogs, AGapIsDrivenAlongJudgedAndWritten) {
+    DeskPerson me(window());
+    Desk& desk = studio->desk();
+    const auto project = simulated_gap_project({{"seed", 3}}, default_gap_stations(), folder / "sheets.ply");
+    ASSERT_TRUE(project) << project.error().sentence();
+    ASSERT_TRUE(desk.create(folder / "gap.seam", *project));
+    QApplication::processEvents();
+    auto* dialog = opened<GapDialog>("gap_check", "gap_dialog");
+    ASSERT_TRUE(dialog);
+    auto* write = dialog->findChild<QPushButton*>("gap_write");
+    auto* stretches = dialog->findChild<QTableWidget*>("gap_stretches");
+    EXPECT_FALSE(write->isEnabled());
+    EXPECT_FALSE(dialog->write(QString::fromStdString((folder / "none.csv").string())));
+    EXPECT_EQ(dialog->findChild<QLineEdit*>("gap_spots")->text(), "S1, S2, S3, S4");
+
+    // What cannot be driven is a sentence in the window.
+    dialog->findChild<QLineEdit*>("gap_spots")->setText("S1, S9");
+    dialog->drive();
+    ASSERT_TRUE(me.wait([&] { return word(*dialog, "gap_verdict").contains("not measured"); }))
+        << word(*dialog, "gap_verdict").toStdString();
+
+    dialog->findChild<QLineEdit*>("gap_spots")->setText("S1, S2,S3 ,S4");
+    dialog->findChild<NumberBox*>("gap_step")->setValue(4);
+    desk.worker().connect_devices();
+    ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
+    dialog->drive();
+    ASSERT_TRUE(QTest::qWaitFor([&] { return write->isEnabled(); }, 3 * kPatienceMs))
+        << word(*dialog, "gap_verdict").toStdString();
+    EXPECT_TRUE(word(*dialog, "gap_verdict").contains("does not pass"))
+        << word(*dialog, "gap_verdict").toStdString();
+    ASSERT_GT(stretches->rowCount(), 0);
+    EXPECT_TRUE(stretches->item(0, 0)->text().contains("S")) << stretches->item(0, 0)->text().toStdString();
+    QApplication::processEvents();
+    dialog->grab().save(QString(SEAMWRIGHT_SCREENS) + "/dialog_gap.png");
+
+    const int before = stretches->rowCount();
+    dialog->findChild<NumberBox*>("gap_nozzle")->setValue(0.5);
+    dialog->findChild<NumberBox*>("gap_clearance")->setValue(0.1);
+    EXPECT_LT(stretches->rowCount(), before);
+    dialog->findChild<NumberBox*>("gap_nozzle")->setValue(50);
+    EXPECT_TRUE(word(*dialog, "gap_verdict").contains("does not pass"));
+
+    const auto csv = folder / "gap.csv", html = folder / "gap.html";
+    ASSERT_TRUE(dialog->write(QString::fromStdString(csv.string())));
+    ASSERT_TRUE(dialog->write(QString::fromStdString(html.string())));
+    EXPECT_GT(std::filesystem::file_size(csv), 200u);
+    EXPECT_GT(std::filesystem::file_size(html), 2000u);
+    EXPECT_FALSE(dialog->write(QString::fromStdString((folder / "no" / "such" / "folder.csv").string())));
+}
+
+// A session with a run in it: what the file holds is what the devices delivered, and the gap check reads such files.
+TEST_F(Dialogs, ASessionIsRecordedWhileOneWorks) {
+    DeskPerson me(window());
+    Desk& desk = studio->desk();
+    auto* dialog = opened<RecordDialog>("record_session", "record_dialog");
+    ASSERT_TRUE(dialog);
+    const auto file = folder / "session.seam";
+    ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
+    std::ofstream(folder / "there.seam") << "not to be lost";
+    EXPECT_FALSE(dialog->start(QString::fromStdString((folder / "there.seam").string())));
+    ASSERT_TRUE(dialog->start(QString::fromStdString(file.string())));
+    EXPECT_FALSE(dialog->start(QString::fromStdString((folder / "second.seam").string()))) << "one at a time";
+    auto* sources = dialog->findChild<QTableWidget*>("record_sources");
+    ASSERT_TRUE(QTest::qWaitFor(
+        [&] { return sources->rowCount() > 0 && sources->item(0, 1)->text().toInt() > 0; }, 3 * kPatienceMs));
+    window().findChild<QAction*>("measure_now")->trigger();
+    ASSERT_TRUE(QTest::qWaitFor([&] { return desk.runs() && !desk.runs()->empty(); }, 3 * kPatienceMs));
+    dialog->grab().save(QString(SEAMWRIGHT_SCREENS) + "/dialog_record.png");
+    dialog->stop();
+    EXPECT_TRUE(word(*dialog, "record_verdict").contains("session.seam"));
+    auto reader = CaptureReader::open(file);
+    ASSERT_TRUE(reader) << reader.error().sentence();
+    EXPECT_EQ(reader->end(), "stopped");
+    EXPECT_GE(reader->sources().size(), 2u) << "sensor and robot";
+    // The devices are there again, without the recorder.
+    ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
+    const auto size = std::filesystem::file_size(file);
+    QTest::qWait(500);
+    EXPECT_EQ(std::filesystem::file_size(file), size);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kKills = 50;
+constexpr int kKills = 25;
 constexpr std::chrono::milliseconds kPatience{40000};
 constexpr int kStartUs = 1200000, kWorkUs = 2000000, kSavingUs = 60000, kSavedUs = 2000;
 

@@ -7,7 +7,7 @@
 namespace seamwright {
 namespace {
 
-constexpr int kSeeds = 60;
+constexpr int kSeeds = 25;
 
 class HeldBySeeds {
   public:

@@ -14,11 +14,11 @@ TEST(KillLong, TwoHundredKillsWithWriteAheadLog) {
 }
 
 TEST(FlippedBitsLong, OfTheFile) {
-    flip_bits_of_the_file(10000, 3);
+    flip_bits_of_the_file(2500, 3);
 }
 
 TEST(FlippedBitsLong, OfTheRows) {
-    flip_bits_of_the_rows(5000, 4);
+    flip_bits_of_the_rows(2500, 4);
 }
 
 }  // namespace seamwright

@@ -123,7 +123,7 @@ TEST(LookupTableCalibration, StatedSigmaCoversTheTruth) {
     const SensorModel truth = sensor();
     int inside = 0, counted = 0;
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-    for (unsigned seed = 0; seed < 40; ++seed) {
+    for (unsigned seed = 0; seed < 120; ++seed) {
         std::mt19937 random(100 + seed);
         LookupTableOptions options;
         options.step_px = 32;
@@ -136,14 +136,14 @@ TEST(LookupTableCalibration, StatedSigmaCoversTheTruth) {
             ASSERT_EQ(std::sscanf(parameters[k].name.c_str(), "x(%lf,%lf)", &u, &v), 2);
             const Eigen::Vector2d xz = *truth.to_laser({u, v});
             const Eigen::Vector2d e(parameters[k].value - xz.x(), parameters[k + 1].value - xz.y());
-            if (k == 0) mean += e / 40;
+            if (k == 0) mean += e / 120;
             inside += std::abs(e.x()) < 1.96 * parameters[k].sigma;
             inside += std::abs(e.y()) < 1.96 * parameters[k + 1].sigma;
             counted += 2;
         }
     }
-    // Somewhat below 95 %: the choice of the degree and the penalty is not part of the sigma.
-    EXPECT_GT(static_cast<double>(inside) / counted, 0.84);
+    EXPECT_GT(static_cast<double>(inside) / counted, 0.9);
+    std::printf("%d of %d inside\n", inside, counted);
     EXPECT_LT(static_cast<double>(inside) / counted, 0.99);
     EXPECT_LT(mean.norm(), 0.03);
 }

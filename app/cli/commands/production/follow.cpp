@@ -149,7 +149,7 @@ Expected<Answer> list_guides(const FollowArguments& a) {
                                          {"points", points.size()},
                                          {"length_mm", curve.length_mm()},
                                          {"csv", g.csv}});
-        answer.text += fmt::format("{:<24}{}  {:>6} points {:9.1f} mm  {}\n", g.name, g.utc, points.size(),
+        answer.text += fmt::format("{:<24}  {}  {:>6} points {:9.1f} mm  {}\n", g.name, g.utc, points.size(),
                                    curve.length_mm(), g.hash.substr(0, 16));
     }
     if (guides.empty()) answer.text = "no guide is kept\n";

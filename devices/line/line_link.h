@@ -64,7 +64,7 @@ const std::vector<LineCode>& line_results();
 struct LinePart {
     std::uint16_t type = 0;
     std::uint32_t number = 0;
-    std::string name;  // printable, at most kLongestLineName bytes
+    std::string name;         // printable, at most kLongestLineName bytes
     std::uint16_t paint = 0;  // colour, as the line numbers them
     bool operator==(const LinePart&) const = default;
     // The name, else the number, else "".

@@ -122,7 +122,8 @@ struct ServedGocator::Impl {
             --losing;
             return;
         }
-        cell->render(exposure.base_from_flange, exposure.number, frame, nullptr, exposure.sensor_from_drifted);
+        cell->render(exposure.base_from_flange, exposure.number, frame, nullptr,
+                     exposure.sensor_from_drifted);
         Profile profile;
         if (find_peaks(frame.image, {}, peaks)) {
             to_millimetres(peaks, cell->sensor_model(), candidates);

@@ -87,7 +87,8 @@ Project project_of(const Cell& cell, const Method& method) {
                                                                           s.repeatability_mm);
     Region& all = project.regions.emplace_back();
     all.id = "all";
-    all.limits = {100, 10};  // they count at the work object's origin, far from the middle that the parts turn about
+    all.limits = {
+        100, 10};  // they count at the work object's origin, far from the middle that the parts turn about
     for (std::size_t n = 0; n < cell.spots.size(); ++n) {
         const std::string& id = cell.spots[n].id;
         SensorSetup& sensor = project.sensors.emplace_back();

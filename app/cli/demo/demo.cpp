@@ -82,7 +82,8 @@ std::string frame_name(const std::string& region_id) {
 }
 
 // A person presses again where reflections have spoiled the measurements; what stays so is told.
-Expected<seamwright::TaughtSpot> teach_again(Station& station, const Spot& spot, const TeachOptions& options) {
+Expected<seamwright::TaughtSpot> teach_again(Station& station, const Spot& spot,
+                                             const TeachOptions& options) {
     for (int presses = 1;; ++presses) {
         auto taught = teach_spot(station, spot, options);
         if (taught || presses == kMostPresses || taught.error().kind != ErrorKind::input) return taught;

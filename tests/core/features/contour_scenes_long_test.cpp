@@ -59,7 +59,8 @@ TEST(ContourScenes, RightOrRefusedButNeverWrong) {
             Scene scene = kind.make(dice);
             if (dice.chance(0.5)) scene.mirror();
             // Which sheet covers the other is a matter of the z axis; a recipe for a sensor that looks along -z says the segment.
-            const bool asks = scene.recipe.kind != "contour-end" || scene.recipe.parameters.contains("segment");
+            const bool asks =
+                scene.recipe.kind != "contour-end" || scene.recipe.parameters.contains("segment");
             if (dice.chance(0.3) && asks) scene.look_down();
             Profile profile = scene.profile(dice);
             ASSERT_TRUE(filter_profile(profile, {}));

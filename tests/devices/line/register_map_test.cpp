@@ -146,8 +146,8 @@ TEST(LineRegisters, EveryProtocolDescribesItselfAndRefusesWhatItDoesNotKnow) {
 }
 
 TEST(LineRegisters, CommandsOfABrokerAreReadStrictly) {
-    const auto good =
-        read_mqtt_command(R"({"id":"7","start":true,"part_type":2,"paint":41,"part_number":815,"part_name":"CAR"})");
+    const auto good = read_mqtt_command(
+        R"({"id":"7","start":true,"part_type":2,"paint":41,"part_number":815,"part_name":"CAR"})");
     ASSERT_TRUE(good);
     EXPECT_EQ(good->part.type, 2);
     EXPECT_EQ(good->part.paint, 41);

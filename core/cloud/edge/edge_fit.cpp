@@ -21,6 +21,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kLeastEnds = 12;
+// Of the edges' length. With 40 % of one seen and a form of 0.1 mm, 28 of 39 truths alone were within the stated 95 %.
+constexpr double kLeastSeen = 0.5;
 constexpr std::size_t kMostCells = 110;  // two nodes each: form_model.h is cubic in them
 
 // One residual: the place moves against `direction`.
@@ -396,8 +398,20 @@ class EdgeFitter {
         return std::pow(kMadToSigma * median(off), 2) / 6;
     }
 
+    double seen_share(std::size_t ends) const {
+        std::map<int, double> lengths;
+        for (const EdgeCurve& e : edges_) lengths[e.edge] = e.length_mm();
+        double length = 0;
+        for (const auto& [edge, l] : lengths) length += l;
+        const double cell = std::max(radius_ / 2, length / static_cast<double>(kMostCells));
+        return std::min(1.0, static_cast<double>(ends) * cell / std::max(1e-9, length));
+    }
+
     bool state() {
         SurfaceFit& fit = out_.fit;
+        if (seen_share(fit.points_used) < kLeastSeen)
+            return refuse(FitStatus::under_determined,
+                          "less than half of the edge was seen: its form is not told from its place");
         const double outward = scatter_mm2(true), normal = scatter_mm2(false);
         if (!std::isfinite(outward + normal))
             return refuse(FitStatus::no_fit, "the scan covers too few places of the edge");

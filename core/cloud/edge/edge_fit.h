@@ -10,7 +10,7 @@
 //
 // A row of an end p with the direction d (outward, then normal) is (d, (p - c) x d): nothing is said of a motion along
 // the edge. So a straight edge leaves the shift along and the turn about itself open, a circle the turn about its axis;
-// they are named and refused, as is what is known worse than the limit. Every edge lies somewhere from the start, so
+// they are named and refused, as is what is known worse than the limit, and an edge of which less than half was seen. Every edge lies somewhere from the start, so
 // without one nothing is fitted. Ambiguous: another place within the start's tolerance that as many ends lie on.
 //
 // Frames, tangent, status and what the pose means are fit.h's.

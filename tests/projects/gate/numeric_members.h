@@ -159,9 +159,10 @@ inline void numbers(const NumberVisitor& visit, const std::string& path, PanelPl
     numbers(visit, path + ".weights", weights);
     numbers(visit, path + ".sigma_mm", sigma);
 }
+// What a learnt sensitivity leads to is a motion of its own, which the gate judges as any other.
 inline void numbers(const NumberVisitor& visit, const std::string& path, PanelJob& v) {
     auto& [id, robot, places, gripper, limits, sigma_mm, sigma_deg, gap, flush, head, deviation, frame_name,
-           frame] = v;
+           frame, sensitivity] = v;
     numbers(visit, path + ".places", places);
     numbers(visit, path + ".base_from_gripper", gripper);
     numbers(visit, path + ".limits", limits);

@@ -2158,7 +2158,7 @@
     </message>
     <message>
         <source>travel (mm), trigger at 0</source>
-        <translation>Weg (mm), Trigger bei 0</translation>
+        <translation>mm ab Trigger</translation>
     </message>
     <message>
         <source>Run the robot from entry to exit: dx, dz and the turn of every profile against the one at the trigger appear here. A contour that stands still is flat.</source>
@@ -2202,7 +2202,7 @@
     </message>
     <message>
         <source>Overlay</source>
-        <translation>Überlagerung</translation>
+        <translation>Overlay</translation>
     </message>
     <message>
         <source>All profiles over each other; the live one thin over the frozen one</source>

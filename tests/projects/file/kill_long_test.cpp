@@ -5,12 +5,12 @@
 
 namespace seamwright {
 
-TEST(KillLong, TwoHundredKills) {
-    kill_while_appending(200, 2, false);
+TEST(KillLong, Kills) {
+    kill_while_appending(80, 2, false);
 }
 
-TEST(KillLong, TwoHundredKillsWithWriteAheadLog) {
-    kill_while_appending(200, 4, true);
+TEST(KillLong, KillsWithWriteAheadLog) {
+    kill_while_appending(80, 4, true);
 }
 
 TEST(FlippedBitsLong, OfTheFile) {

@@ -46,11 +46,9 @@ namespace seamwright {
 namespace {
 
 constexpr int kPageWidth = 440;
-constexpr QSize kFirstSize(1440, 900), kSmallestSize(1180, 660);  // logical pixels
+constexpr QSize kFirstSize(1440, 900), kSmallestSize(1280, 768);  // logical pixels
 // What the live profile keeps of the window's height, whatever stands below it.
 constexpr double kProfileShare = 0.35;
-constexpr int kLowerView_px = 160;     // of a view below it, at least
-constexpr int kReadablePlot_px = 300;  // in which an axis' label has room
 constexpr int kLayoutVersion = 2;
 constexpr int kDevices_ms = 250;
 constexpr std::chrono::milliseconds kRobotStale{3000};
@@ -87,18 +85,6 @@ class DockTitle : public QWidget {
   private:
     std::function<void()> full_;
 };
-
-// What does not fit below the live profile of a small window is scrolled to.
-QScrollArea* scrolled(QWidget* view) {
-    auto* area = new QScrollArea;
-    area->setWidget(view);
-    area->setWidgetResizable(true);
-    area->setFrameShape(QFrame::NoFrame);
-    area->setFocusPolicy(Qt::NoFocus);
-    area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-    area->setMinimumHeight(kLowerView_px);
-    return area;
-}
 
 }  // namespace
 
@@ -194,20 +180,18 @@ void MainWindow::make_docks() {
     auto* chart_box = new QVBoxLayout(charts);
     chart_box->setContentsMargins(0, 0, 0, 0);
     charts->setFocusProxy(views_.trend);
-    charts->setMinimumHeight(kReadablePlot_px);
-    views_.residuals->setMinimumHeight(kReadablePlot_px);
     chart_box->addWidget(views_.trend, 3);
     chart_box->addWidget(views_.histogram, 2);
 
     QDockWidget* profile = add_dock("dock_profile", tr("Live profile"), views_.profile);
     QDockWidget* camera = add_dock("dock_camera", tr("Camera image"), views_.camera);
     QDockWidget* scene = add_dock("dock_scene", tr("Part in 3D"), views_.scene);
-    QDockWidget* align = add_dock("dock_align", tr("Frozen contour"), scrolled(views_.align));
-    QDockWidget* residuals = add_dock("dock_residuals", tr("Residuals"), scrolled(views_.residuals));
-    QDockWidget* trend = add_dock("dock_charts", tr("Charts"), scrolled(charts));
+    QDockWidget* align = add_dock("dock_align", tr("Frozen contour"), views_.align);
+    QDockWidget* residuals = add_dock("dock_residuals", tr("Residuals"), views_.residuals);
+    QDockWidget* trend = add_dock("dock_charts", tr("Charts"), charts);
     QDockWidget* events = add_dock("dock_events", tr("Events"), new EventList(desk_));
     views_.jog = new JogPanel(desk_);
-    QDockWidget* jog = add_dock("dock_jog", tr("Jog"), scrolled(views_.jog));
+    QDockWidget* jog = add_dock("dock_jog", tr("Jog"), views_.jog);
     addDockWidget(Qt::RightDockWidgetArea, profile);
     tabifyDockWidget(profile, camera);
     addDockWidget(Qt::RightDockWidgetArea, scene);

@@ -31,7 +31,6 @@ struct JogStep {
 };
 constexpr std::array<JogStep, 6> kJogSteps{{{0.1, 0.1}, {0.5, 0.1}, {1, 0.5}, {5, 1}, {10, 2}, {50, 10}}};
 constexpr int kFirstStep = 2;
-constexpr int kTwoColumns_px = 660;  // of the panel: names, and words of a choice, side by side
 
 }  // namespace
 
@@ -67,17 +66,12 @@ JogPanel::JogPanel(Desk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
     refresh();
 }
 
-void JogPanel::resizeEvent(QResizeEvent* event) {
-    columns_->setDirection(width() < kTwoColumns_px ? QBoxLayout::TopToBottom : QBoxLayout::LeftToRight);
-    QWidget::resizeEvent(event);
-}
-
 void JogPanel::make_choices() {
-    columns_ = new QHBoxLayout;
+    auto* columns = new QHBoxLayout;
     auto *left = new QVBoxLayout, *right = new QVBoxLayout;
-    columns_->addLayout(left, 1);
-    columns_->addLayout(right, 1);
-    static_cast<QVBoxLayout&>(*layout()).addLayout(columns_);
+    columns->addLayout(left, 1);
+    columns->addLayout(right, 1);
+    static_cast<QVBoxLayout&>(*layout()).addLayout(columns);
     robot_ = new QComboBox;
     robot_->setObjectName("jog_robot");
     add_field(*left, tr("Robot"), robot_, tr("The robot that is moved"));

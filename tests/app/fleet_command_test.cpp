@@ -53,7 +53,7 @@ TEST_F(FleetCommand, FromTheFileToTheStatisticsOfAllStations) {
     const std::string uri = server->uri();
     EXPECT_THAT(run({"fleet", "publish", file.string(), "--to", uri}, 3).err, HasSubstr("fleet init"));
     EXPECT_EQ(answer({"fleet", "init", "--to", uri})["before"], 0);
-    EXPECT_EQ(answer({"fleet", "init", "--to", uri})["before"], 1);
+    EXPECT_EQ(answer({"fleet", "init", "--to", uri})["before"], 2);
     const json published = answer({"fleet", "publish", file.string(), "--to", uri, "--station", "line 2"});
     EXPECT_EQ(published["published"], 15);
     EXPECT_EQ(published["waiting"], 0);

@@ -5,6 +5,7 @@
 #include <QMessageBox>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <utility>
 
 #include "devices/exchange/files.h"
 #include "projects/panel/gap_report.h"
@@ -93,15 +94,17 @@ GapDialog::GapDialog(Desk& desk, QWidget* parent) : QDialog(parent), desk_(desk)
     connect(reference_, &QComboBox::currentIndexChanged, this, [this] { judge(); });
     connect(&desk_, &Desk::opened, this, &QDialog::close);
     connect(&desk_.worker(), &StationWorker::gap_passed, this, [this](std::shared_ptr<const GapPass> pass) {
+        waiting_ = false;
         pass_ = std::move(pass);
         judge();
     });
-    connect(&desk_.worker(), &StationWorker::failed, this,
-            [this](const QString& sentence) { set_verdict(*verdict_, sentence, Tone::alarm); });
+    connect(&desk_.worker(), &StationWorker::failed, this, [this](const QString& sentence) {
+        if (std::exchange(waiting_, false)) set_verdict(*verdict_, sentence, Tone::alarm);
+    });
     connect(&desk_.worker(), &StationWorker::busy_changed, this,
             [this](bool busy) { drive_->setEnabled(!busy); });
     connect(&desk_.worker(), &StationWorker::progressed, this, [this](int done, int total, const QString&) {
-        set_verdict(*verdict_, tr("%1 of %2 profiles").arg(done).arg(total), Tone::plain);
+        if (waiting_) set_verdict(*verdict_, tr("%1 of %2 profiles").arg(done).arg(total), Tone::plain);
     });
     fill_spots();
     judge();
@@ -129,6 +132,7 @@ DrivenGapPass GapDialog::driven() const {
 }
 
 void GapDialog::drive() {
+    waiting_ = true;
     desk_.worker().drive_gap(driven());
 }
 
@@ -140,6 +144,7 @@ void GapDialog::ask_and_drive() {
 }
 
 void GapDialog::take_recording(const QString& file) {
+    waiting_ = true;
     desk_.worker().read_gap(file.toStdString(), {});
 }
 

@@ -47,6 +47,7 @@ class GapDialog : public QDialog {
     std::shared_ptr<const GapPass> pass_;
     std::optional<GapCheck> check_;
     GapScanOptions options_;
+    bool waiting_ = false;  // for a pass that this window asked for; what else is done is not its business
 };
 
 }  // namespace seamwright

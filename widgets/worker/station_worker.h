@@ -71,7 +71,8 @@ class StationWorker : public QObject {
 
     void connect_devices();
     void disconnect_devices();
-    // Everything that the devices deliver goes into this recording too (nullptr: no more); they connect anew.
+    // Everything that the devices deliver goes into this recording too (nullptr: no more); they connect
+    // anew, without a recorder only where they are connected.
     void record_to(std::shared_ptr<Recorder> recorder);
     // `part_type`: of the part that stands there; empty where the project has no types.
     void measure(const std::string& part_id, bool push, bool keep_images, const std::string& part_type = {});

@@ -102,8 +102,11 @@ void StationWorker::confirm(const std::string& spot_id) {
 }
 
 void StationWorker::record_to(std::shared_ptr<Recorder> recorder) {
-    post(tr("Recording"), [=](Station& station, const std::stop_token&) { station.record_to(recorder); });
-    connect_devices();
+    post(tr("Recording"), [=, this](Station& station, const std::stop_token&) {
+        const bool anew = recorder || station.connected();
+        station.record_to(recorder);
+        if (anew) connect_devices();
+    });
 }
 
 void StationWorker::drive_gap(const DrivenGapPass& asked) {

@@ -136,7 +136,7 @@ struct SmoothMap::Modes {
     }
 };
 
-// Every step of stiffness at the last of degrees_ is a candidate.
+// Every step of stiffness at the last of degrees_ is a candidate, as long as the pairs do not speak against it.
 void SmoothMap::try_stiffnesses(const Modes& m, const MatrixXd& transform) {
     const Index n = m.flat.rows();
     for (int step = -1; step <= m.last_step(); ++step) {
@@ -156,7 +156,8 @@ void SmoothMap::try_stiffnesses(const Modes& m, const MatrixXd& transform) {
             const double rest = std::max(1 - c.leverage(i), 1e-6);
             c.error += c.residual.row(i).squaredNorm() / (rest * rest);
         }
-        if (!std::isfinite(c.error)) continue;
+        if (!std::isfinite(c.error) || !(weight_of(c, n) >= kLeastWeight)) continue;
+        least_error_ = std::min(least_error_, c.error);
         MatrixXd right = m.qy;
         if (step >= 0) {
             const MatrixXd g = inverse.asDiagonal() * m.scores;
@@ -168,27 +169,33 @@ void SmoothMap::try_stiffnesses(const Modes& m, const MatrixXd& transform) {
         }
         c.poly = m.r.triangularView<Eigen::Upper>().solve(right);
         candidates_.push_back(std::move(c));
+        std::erase_if(candidates_, [&](const Candidate& k) { return weight_of(k, n) < kLeastWeight; });
     }
 }
 
-// The mean of the candidates that the pairs do not speak against. Their weights: what each predicts of pairs it has not
-// seen, as the likelihood of two numbers a pair.
+// Beside the best so far: what each predicts of pairs it has not seen, as the likelihood of two numbers a pair, which are
+// half as many as they seem: left-out errors of neighbours go together.
+double SmoothMap::weight_of(const Candidate& c, Index pairs) const {
+    const double error = std::max(c.error, 1e-300);
+    return error <= least_error_ ? 1 : std::pow(least_error_ / error, 0.5 * static_cast<double>(pairs));
+}
+
+// The mean of the candidates by their weights.
 void SmoothMap::average() {
-    const double n = static_cast<double>(candidates_.front().residual.rows());
+    const Index pairs = candidates_.front().residual.rows();
+    const double n = static_cast<double>(pairs);
     const auto best =
         std::min_element(candidates_.begin(), candidates_.end(),
                          [](const Candidate& a, const Candidate& b) { return a.error < b.error; });
     degree_ = degrees_[best->degree].degree;
-    const double least = std::max(best->error, 1e-300);
-    for (Candidate& c : candidates_) c.weight = std::pow(least / std::max(c.error, least), 0.5 * n);
-    std::erase_if(candidates_, [](const Candidate& c) { return c.weight < kLeastWeight; });
+    for (Candidate& c : candidates_) c.weight = weight_of(c, pairs);
     double all = 0;
     for (const Candidate& c : candidates_) all += c.weight;
     const auto knots = static_cast<Index>(knots_.size());
     poly_ = MatrixXd::Zero(terms(degrees_.back().degree), 2);
     bend_ = MatrixXd::Zero(knots, 2);
-    residual_ = MatrixXd::Zero(candidates_.front().residual.rows(), 2);
-    leverage_ = VectorXd::Zero(residual_.rows());
+    residual_ = MatrixXd::Zero(pairs, 2);
+    leverage_ = VectorXd::Zero(pairs);
     noise_.setZero();
     effective_ = 0;
     for (Candidate& c : candidates_) {
@@ -200,9 +207,8 @@ void SmoothMap::average() {
         effective_ += c.weight * c.effective;
         noise_ += c.weight / std::max(1.0, n - c.effective) * (c.residual.transpose() * c.residual);
     }
-    const double student = student_quantile(0.975, std::max(1.0, 2 * freedom())) / normal_quantile(0.975);
-    noise_ *= student * student;
-    for (Candidate& c : candidates_) c.residual.resize(0, 0);
+    student_ = student_quantile(0.975, std::max(1.0, 2 * freedom())) / normal_quantile(0.975);
+    for (Candidate& c : candidates_) c.residual.resize(0, 0), c.leverage.resize(0);
 }
 
 void SmoothMap::state_places(const Samples& s, double sigma_mm) {
@@ -211,7 +217,8 @@ void SmoothMap::state_places(const Samples& s, double sigma_mm) {
     for (const Vector2d& p : s.pixel)
         stated += sigma_mm * sigma_mm * homography_slope(p).inverse().squaredNorm() /
                   static_cast<double>(s.pixel.size());
-    if (!(stated > noise_.trace())) return;
+    if (!(stated > student_ * student_ * noise_.trace())) return;
+    student_ = 1;
     if (noise_.trace() > 0)
         noise_ *= stated / noise_.trace();
     else
@@ -249,6 +256,7 @@ SmoothMap::Known SmoothMap::known(const Vector2d& pixel) const {
         known.apart.col(static_cast<Index>(i)) =
             root * ((powers.head(k.poly.rows()) * k.poly + kernels * k.bend).transpose() - mean);
     }
+    known.row *= student_;
     return known;
 }
 
@@ -263,6 +271,7 @@ bool SmoothMap::fit(const Samples& s, int least_degree, int most_degree) {
     // Every lens bends to the third degree: a lower one saves noise only where samples are few.
     if (n >= kManySamples) least_degree = std::max(least_degree, std::min(3, most_degree));
     degrees_.clear(), candidates_.clear();
+    least_error_ = kInfinity;
     for (int degree = least_degree; degree <= most_degree; ++degree) {
         const Index m = terms(degree);
         if (degree > 1 && static_cast<double>(m) > kMostTerms * static_cast<double>(n)) break;
@@ -274,9 +283,10 @@ bool SmoothMap::fit(const Samples& s, int least_degree, int most_degree) {
         if (!(r.diagonal().cwiseAbs().minCoeff() > kLeastRank * r.diagonal().cwiseAbs().maxCoeff())) break;
         const Modes modes(q, r, y, columns);
         degrees_.push_back({degree, r, {}, {}});
-        if (columns.size() > 0)
-            degrees_.back().cross = modes.mixed * modes.vectors,
+        if (columns.size() > 0) {
+            degrees_.back().cross = modes.mixed * modes.vectors;
             degrees_.back().rotate = transform * modes.vectors;
+        }
         try_stiffnesses(modes, transform);
     }
     if (candidates_.empty()) return false;

@@ -55,7 +55,9 @@ class SmoothMap {
     // What the map is known to at some places, each as seen through the candidates that were averaged: covariance of
     // the map (corrected px, px^2) between two places, noise and choice together.
     struct Known {
-        Eigen::VectorXd row;  // products of two rows, in units of noise()
+        // Products of two rows, in units of noise(); as wide as a normal one that holds 95 % has to be where noise() is
+        // estimated from few pairs.
+        Eigen::VectorXd row;
         Eigen::Matrix2Xd
             apart;  // how far the candidates lie from their mean, by the root of their weight, px
         Eigen::Matrix2d with(const Known& other, const Eigen::Matrix2d& noise) const {
@@ -65,8 +67,7 @@ class SmoothMap {
     Known known(const Eigen::Vector2d& pixel) const;
     // The noise is at least what places of this sigma (mm along each axis) give in corrected px.
     void state_places(const Samples& s, double sigma_mm);
-    // Covariance of a pair's miss(), px^2, from the redundancy, as wide as a normal one that holds 95 % has to be.
-    const Eigen::Matrix2d& noise() const { return noise_; }
+    const Eigen::Matrix2d& noise() const { return noise_; }  // covariance of a pair's miss(), px^2
     // Residual over sqrt(1 - leverage) as a square in units of the noise, and the leave-one-out error in px.
     double studentised(std::size_t i, const Eigen::Matrix2d& noise_inverse) const {
         const auto k = static_cast<Eigen::Index>(i);
@@ -104,6 +105,7 @@ class SmoothMap {
     };
     std::vector<Degree> degrees_;
     std::vector<Candidate> candidates_;
+    double least_error_ = 0, student_ = 1;
     Eigen::MatrixXd residual_;
     Eigen::VectorXd leverage_;
     Eigen::Matrix2d noise_ = Eigen::Matrix2d::Zero();
@@ -141,6 +143,7 @@ class SmoothMap {
                         Eigen::MatrixXd& transform) const;
     struct Modes;
     void try_stiffnesses(const Modes& m, const Eigen::MatrixXd& transform);
+    double weight_of(const Candidate& c, Eigen::Index pairs) const;
     void average();
 };
 

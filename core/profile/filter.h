@@ -18,6 +18,8 @@
 // than about six sigma or, between differently inclined pieces, one that a sharp edge explains; a piece
 // shorter than min_segment_points.
 
+#include <span>
+
 #include "core/error.h"
 #include "core/profile/profile.h"
 
@@ -67,7 +69,9 @@ Expected<void> filter_profile(Profile& profile, const FilterOptions& options);
 // point a line: the chosen candidate; the strongest, marked kOutlier, where none belongs to the stripe; NaN
 // where the line has none. The unit may be millimetre or pixel. The order of candidates within a line does
 // not matter; a missing `intensity` means equal ones.
+// `known` (empty, or one a slot): what is known of a candidate from elsewhere: 1 it lies on the contour, -1 it is a
+// reflection, 0 nothing.
 Expected<void> track_stripe(const ProfileCandidates& candidates, const FilterOptions& options,
-                            Profile& profile);
+                            Profile& profile, std::span<const signed char> known = {});
 
 }  // namespace seamwright

@@ -280,14 +280,16 @@ Workspace& workspace() {
 
 }  // namespace
 
-Expected<void> track_stripe(const ProfileCandidates& input, const FilterOptions& options, Profile& profile) {
+Expected<void> track_stripe(const ProfileCandidates& input, const FilterOptions& options, Profile& profile,
+                            std::span<const signed char> known) {
     SEAM_OK(check(options));
     if (input.lines < 0 || input.per_line < 1)
         return input_error("the candidates have no lines or no room per line", "lines, per_line",
                            "give lines >= 0 and per_line >= 1");
     const std::size_t lines = std::size_t(input.lines), all = lines * std::size_t(input.per_line);
     if (input.count.size() != lines || input.x_mm.size() != all || input.z_mm.size() != all ||
-        (!input.intensity.empty() && input.intensity.size() != all))
+        (!input.intensity.empty() && input.intensity.size() != all) ||
+        (!known.empty() && known.size() != all))
         return input_error("the arrays of the candidates differ in length", "count, x_mm, z_mm, intensity",
                            "give lines counts and lines * per_line values");
 
@@ -342,15 +344,21 @@ Expected<void> track_stripe(const ProfileCandidates& input, const FilterOptions&
         model.jump_size_cost = kJumpSize * model.outlier_cost;
         model.edge_cost = kEdge * model.outlier_cost;
         model.edge_window = 2;
+        const auto known_of = [&](int c) {
+            return known.empty() ? 0 : int(known[std::size_t(w.chosen[std::size_t(c)])]);
+        };
         follow_tracks(w, model, all_tracks);
         join_tracks(w, model, all_tracks);
         find_reflections(w, all_tracks);
         const auto is_reflection = [&](int c) {
+            if (const int k = known_of(c); k != 0) return k < 0;
             const int piece = all_tracks.tracks[std::size_t(all_tracks.track_of[std::size_t(c)])].piece;
             return piece >= 0 && all_tracks.stretches[std::size_t(piece)].reflection;
         };
-        for (std::size_t c = 0; c < w.candidates.size(); ++c)
+        for (std::size_t c = 0; c < w.candidates.size(); ++c) {
+            if (known_of(int(c)) > 0) w.candidates[c].cost = 0;
             if (is_reflection(int(c))) w.candidates[c].cost += kReflection;
+        }
         w.enter.resize(w.candidates.size()), w.leave.resize(w.candidates.size());
         const auto unfinished = [&](int points) {
             return kUnfinished * model.outlier_cost * std::min(1., double(points) / kWholeTrack);

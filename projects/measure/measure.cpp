@@ -9,6 +9,7 @@
 
 #include "core/correction/travel.h"
 #include "core/features/kinds/feature_registry.h"
+#include "core/features/registration/taught_stripe.h"
 
 namespace seamwright {
 namespace {
@@ -212,6 +213,7 @@ struct SpotMeasurer::Impl {
     Pose flange_from_sensor = Pose::Identity();
     bool calibrated = false;
     std::unique_ptr<FeatureFinder> finder;
+    std::optional<TaughtStripe> taught;  // where the reference profile is a contour
 
     StripePeaks peaks;
     Capture capture;
@@ -243,8 +245,18 @@ struct SpotMeasurer::Impl {
 
     // From the capture's profile or candidates to the end.
     const SpotMeasurement& evaluate(const Capture& from) {
-        if (auto tracked = track_capture(from, filter, profile); !tracked)
+        if (taught && from.profile.size() == 0) {
+            const auto choice = taught->track(from.candidates, filter, profile);
+            if (!choice) return no(SpotStatus::no_stripe, choice.error().text());
+            if (*choice == StripeChoice::undecided) {
+                measurement.feature.status = FeatureStatus::ambiguous;
+                return no(
+                    SpotStatus::no_feature,
+                    "two contours like the taught one are seen, and nothing tells which is the reflection");
+            }
+        } else if (auto tracked = track_capture(from, filter, profile); !tracked) {
             return no(SpotStatus::no_stripe, tracked.error().text());
+        }
         measurement.feature = finder->find(profile);
         const Feature& feature = measurement.feature;
         if (feature.status != FeatureStatus::ok)
@@ -289,6 +301,10 @@ Expected<SpotMeasurer> SpotMeasurer::make(const Project& project, const std::str
     impl->peak_options = sensor->peaks;
     impl->filter = sensor->filter;
     impl->finder = std::move(*finder);
+    if (auto taught =
+            TaughtStripe::make(spot->reference_profile, {spot->reference_mm.x(), spot->reference_mm.z()},
+                               search_window(spot->feature)))
+        impl->taught = std::move(*taught);
     if (const Calibration* calibration = calibration_of(project, *spot)) {
         impl->calibrated = true;
         impl->model = calibration->model;

@@ -36,4 +36,11 @@ Expected<std::unique_ptr<FeatureFinder>> make_feature_finder(const FeatureRecipe
     return kind->make(recipe);
 }
 
+SearchWindow search_window(const FeatureRecipe& recipe) {
+    if (recipe.kind == template_kind().name) return template_window(recipe.parameters);
+    SearchWindow window;
+    window.dx_mm = window.dz_mm = 20;
+    return window;
+}
+
 }  // namespace seamwright

@@ -92,18 +92,22 @@ class TemplateFeature final : public FeatureFinder {
 };
 
 Expected<std::unique_ptr<FeatureFinder>> make_template(const FeatureRecipe& recipe) {
-    const auto infos = template_parameters();
     SEAM_TRY(auto matcher, ContourMatcher::make(recipe.template_profile, recipe.template_reference_mm));
-    auto value = [&](const char* name) { return parameter(recipe.parameters, infos, name); };
-    SearchWindow window;
-    window.dx_mm = value("window_dx_mm");
-    window.dz_mm = value("window_dz_mm");
-    window.phi_rad = rad_from_deg(value("window_dphi_deg"));
-    return std::make_unique<TemplateFeature>(std::move(matcher), window, recipe.template_reference_mm,
-                                             value("minimum_share"));
+    return std::make_unique<TemplateFeature>(
+        std::move(matcher), template_window(recipe.parameters), recipe.template_reference_mm,
+        parameter(recipe.parameters, template_parameters(), "minimum_share"));
 }
 
 }  // namespace
+
+SearchWindow template_window(const ParameterValues& values) {
+    const auto infos = template_parameters();
+    SearchWindow window;
+    window.dx_mm = parameter(values, infos, "window_dx_mm");
+    window.dz_mm = parameter(values, infos, "window_dz_mm");
+    window.phi_rad = rad_from_deg(parameter(values, infos, "window_dphi_deg"));
+    return window;
+}
 
 FeatureKind template_kind() {
     return {"template", "A taught piece of contour found again; it carries its reference point along.",

@@ -10,8 +10,9 @@
 
 namespace seamwright {
 
-// `runs` runs of `spots` spots with noise, every tenth with a damaged frame; half way the project is edited.
-inline void store_runs(const std::filesystem::path& path, int runs, int spots) {
+// `runs` runs of `spots` spots with noise, every tenth with a damaged frame; half way the project is edited. Each run is a
+// part of its own where `part` is empty.
+inline void store_runs(const std::filesystem::path& path, int runs, int spots, const std::string& part = {}) {
     auto cell = make_fake_cell(spots);
     cell->noise_mm = 0.02;
     for (Spot& spot : cell->project.spots) spot.required = spot.id != "S2";
@@ -43,7 +44,9 @@ inline void store_runs(const std::filesystem::path& path, int runs, int spots) {
             edited.sensors[0].filter.band_sigmas = 5;
             ASSERT_TRUE(station.edit(edited));
         }
-        auto record = station.run({});
+        RunOptions options;
+        options.part_id = part;
+        auto record = station.run(options);
         ASSERT_TRUE(record) << record.error().sentence();
         ASSERT_TRUE(record->status == RunStatus::ok || record->status == RunStatus::refused)
             << record->message;

@@ -66,7 +66,8 @@ def fleet(database, project, tool):
     published = tool("fleet", "publish", project, exits=(0, 1))
     if published.returncode:
         wrong.append(f"the fleet does not take what waits: {published.stderr.strip()[-300:]}")
-    rows = [line.split("|") for line in (database.ask("SELECT number, part, status FROM seamwright.run ORDER BY number") or "").split()]
+    told = database.ask("SELECT number, part, status FROM seamwright.run ORDER BY number") or ""
+    rows = [line.split("|") for line in told.split()]
     in_fleet = collections.Counter(int(r[0]) for r in rows)
     status = {int(r[0]): (r[1], r[2]) for r in rows}
     for run in runs_of(project):
@@ -76,14 +77,16 @@ def fleet(database, project, tool):
         if count != 1:
             wrong.append(f"run {run['number']} ({run['part']}, {run['status']}) is {count} times in the database")
         elif status[run["number"]] != (run["part"], run["status"]):
-            wrong.append(f"run {run['number']} is {run['part']}, {run['status']} in the file, but {status[run['number']]} in the database")
+            wrong.append(f"run {run['number']} is {run['part']}, {run['status']} in the file, "
+                         f"but {status[run['number']]} in the database")
     for number in in_fleet:
         wrong.append(f"run {number} is in the database, but not in the file")
     return wrong, len(rows)
 
 
 def messages(line, listener, broker_kills, runner_kills):
-    """Results arrive over the broker; the last will is seen. What a killed broker or runner had in hand may be missing, once each."""
+    """Results arrive over the broker; the last will is seen. What a killed broker or runner had in hand may be missing, once
+    each."""
     results = collections.defaultdict(list)
     wills = 0
     for topic, message in list(listener.messages):
@@ -136,8 +139,9 @@ def slope(samples):
 
 
 def flat(samples, minutes):
-    """(sentences, MiB/h, its error): memory, threads and files of the runner over the last half. Caches and the rings of the page fill
-    up first, and each kind of outage costs once: below 2 MiB of growth in all, 6 in less than an hour, nothing is said."""
+    """(sentences, MiB/h, its error): memory, threads and files of the runner over the last half. Caches and the rings of the
+    page fill up first, and each kind of outage costs once: below 2 MiB of growth in all, 6 in less than an hour, nothing is
+    said."""
     scatter = 2 if minutes >= 60 else 6
     half = [s for s in samples if s[0] >= samples[-1][0] / 2] if samples else []
     wrong = []

@@ -1,4 +1,4 @@
-"""The line of the soak: calls part after part as a plant's PLC does, knows the truth of each, and keeps book of what it was told."""
+"""The line of the soak: calls part after part as a plant's PLC does, knows the truth of each, keeps book of what it was told."""
 
 import json
 import sqlite3
@@ -129,8 +129,8 @@ class Line:
         for name, frame in now.items():
             off = apart(frame["matrix"], wanted[name]["matrix"], [[0, 0, 0], [1000, 0, 0], [0, 1000, 0]])
             if off > SAME_FRAME_MM:
-                self.fault(f"after part {part.name} ({part.event and part.event.get('status')}) frame {name} stands {off:.3f} mm off "
-                           f"what was released")
+                self.fault(f"after part {part.name} ({part.event and part.event.get('status')}) frame {name} stands "
+                           f"{off:.3f} mm off what was released")
 
     def stored_regions(self, run):
         with sqlite3.connect(f"file:{self.project}?mode=ro", uri=True, timeout=30) as db:

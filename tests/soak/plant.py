@@ -167,7 +167,7 @@ class Database:
         if os.geteuid() == 0:
             user = pwd.getpwnam("postgres")
             os.chown(self.folder, user.pw_uid, user.pw_gid)
-            self.as_user = ["setpriv", "--reuid=postgres", "--regid=postgres", "--clear-groups"]
+            self.as_user = ["setpriv", "--reuid=postgres", "--regid=postgres", "--clear-groups", "--pdeathsig", "KILL"]
         subprocess.run([*self.as_user, self.bin / "initdb", "-D", self.folder / "data", "-U", "seam", "--auth=trust", "-E", "UTF8",
                         "--locale=C", "--no-sync"], check=True, capture_output=True, cwd="/")
         self.url = f"postgresql://seam@127.0.0.1:{self.port}/fleet"

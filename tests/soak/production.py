@@ -1,30 +1,35 @@
 #!/usr/bin/env python3
-"""Two hours of production in small: `seamwright run --watch --push` before a served cell, with everything going wrong around it.
+"""Two hours of production in small: `seamwright run --watch --push` before a served cell, with everything going wrong around
+it.
 
 usage: tests/soak/production.py build/bin/seamwright [--minutes 120] [--seed 1] [--taught demo.seam] [--folder DIR]
 
-A station is made with the product's own commands: the demo's door as two part types ("left" measured along its top, "right" along its
-bottom) in two paints, and a fixed reference that the robot calls as a part type of its own, measured after every EVERY_PARTS parts.
-Broker (mosquitto), database (PostgreSQL), cell (`sim-cell`: GigE Vision camera and a KUKA controller over EthernetKRL) and the runner
-are processes of their own. The line calls part after part, each displaced by the seed; the robot drifts from a known part on; later it
-is knocked once; camera, controller, whole cell, broker, database and the runner itself go away at times of the seed.
+A station is made with the product's own commands: the demo's door as two part types ("left" measured along its top, "right"
+along its bottom) in two paints, and a fixed reference that the robot calls as a part type of its own, measured after every
+EVERY_PARTS parts. Broker (mosquitto), database (PostgreSQL), cell (`sim-cell`: GigE Vision camera and a KUKA controller over
+EthernetKRL) and the runner are processes of their own. The line calls part after part, each displaced by the seed; the robot
+drifts from a known part on; later it is knocked once; camera, controller, whole cell, broker, database and the runner itself
+go away at times of the seed.
 
 What is claimed:
-- Nothing lost: each part that is called ends as one stored run or one said refusal for each call that was answered; every run is in
-  PostgreSQL once; results arrive over MQTT but for at most one for each kill of broker or runner; the last will is seen at every kill
-  of the runner; what the broker keeps is there when it comes back; `check` and `audit` pass.
-- Drift named within 20 parts: the drift grows towards DRIFT_MM with a time constant of DRIFT_POINTS measurements of the reference. It
-  reaches its limit when the place where the script has put the robot shows the watch's limit (0.1 mm) in one direction of the reference. From the
-  part after that, at most 20 parts are called (the reference's own included) until `seamwright drift status` says change "drift" or
-  verdict "recalibrate".
-- Bump stopped at once: the robot is knocked by BUMP_MM before a part. The next measurement of the reference stops production; no
-  part after it is pushed until a person has acknowledged. Parts between knock and that measurement are measured as they stand.
-- Never a wrong place: a part that is ok has its region's points within 0.5 mm (claims.py) of where the script has put them, as the
-  robot sees them; the frames on the controller after every part are those of the last run that was released, within 0.01 mm.
-- The status page answers but for 30 s after a start of the runner. Memory, threads and open files of the runner are flat over the last half.
+- Nothing lost: each part that is called ends as one stored run or one said refusal for each call that was answered; every
+  run is in PostgreSQL once; results arrive over MQTT but for at most one for each kill of broker or runner; the last will is
+  seen at every kill of the runner; what the broker keeps is there when it comes back; `check` and `audit` pass.
+- Drift named within 20 parts: the drift grows towards DRIFT_MM with a time constant of DRIFT_POINTS measurements of the
+  reference. It reaches its limit when the place where the script has put the robot shows the watch's limit (0.1 mm) in one
+  direction of the reference. From the part after that, at most 20 parts are called (the reference's own included) until
+  `seamwright drift status` says change "drift" or verdict "recalibrate".
+- Bump stopped at once: the robot is knocked by BUMP_MM before a part. The next measurement of the reference stops
+  production; no part after it is pushed until a person has acknowledged. Parts between knock and that measurement are
+  measured as they stand.
+- Never a wrong place: a part that is ok has its region's points within 0.5 mm (claims.py) of where the script has put them,
+  as the robot sees them; the frames on the controller after every part are those of the last run that was released, within
+  0.01 mm.
+- The status page answers but for 30 s after a start of the runner. Memory, threads and open files of the runner are flat
+  over the last half.
 
-The simulated surface has one brightness: the paints differ in what the line announces and in the exposure that is set for them.
-Exit 0: all claims hold; 1: a sentence for each that does not, and the folder is left."""
+The simulated surface has one brightness: the paints differ in what the line announces and in the exposure that is set for
+them. Exit 0: all claims hold; 1: a sentence for each that does not, and the folder is left."""
 
 import argparse
 import collections
@@ -206,8 +211,9 @@ class Soak:
                 named = standing["change"] == "drift" or standing["status"] == "recalibrate"
                 if named and "drift" not in self.figures:
                     after = len(self.line.parts) - (reached or len(self.line.parts))
-                    self.figures["drift"] = (f"named {after} parts after it reached its limit, {len(self.line.parts) - first} after it began, "
-                                             f"at {self.shown_mm(self.line.shift_mm):.3f} mm: {standing['text']}")
+                    self.figures["drift"] = (f"named {after} parts after it reached its limit, "
+                                             f"{len(self.line.parts) - first} after it began, at "
+                                             f"{self.shown_mm(self.line.shift_mm):.3f} mm: {standing['text']}")
                     print("the drift is", self.figures["drift"], flush=True)
                 if reached and "drift" not in self.figures and len(self.line.parts) - reached >= 20:
                     self.fault(f"the drift is not named 20 parts after it reached its limit: {standing['text']}")
@@ -273,9 +279,11 @@ class Soak:
             elapsed = time.monotonic() - self.begun
             if usage:
                 self.samples.append((elapsed, *usage))
-            counts = collections.Counter((p.event or {}).get("status", (p.event or {}).get("event", "open")) for p in self.line.parts)
-            print(f"{elapsed / 60:5.1f} min  parts {len(self.line.parts)}  {dict(counts)}  shift {self.line.shift_mm:.2f} mm  "
-                  f"RSS {usage[0] / 1024 if usage else 0:.1f} MiB  threads {usage[1] if usage else 0}  files {usage[2] if usage else 0}  "
+            ends = [p.event or {"event": "open"} for p in self.line.parts]
+            counts = collections.Counter(e.get("status", e["event"]) for e in ends)
+            kib, threads, files = usage or (0, 0, 0)
+            print(f"{elapsed / 60:5.1f} min  parts {len(ends)}  {dict(counts)}  shift {self.line.shift_mm:.2f} mm  "
+                  f"RSS {kib / 1024:.1f} MiB  threads {threads}  files {files}  "
                   f"trouble {sum(self.trouble.done.values())}/{len(self.trouble.plan)} {self.trouble.now}", flush=True)
             for _ in range(600 if self.a.minutes > 20 else 100):
                 time.sleep(0.1)
@@ -329,7 +337,8 @@ class Soak:
             "outages": ", ".join(f"{k} {n}" for k, n in sorted(self.trouble.done.items())),
             "largest error of an ok part": f"{worst:.3f} mm",
             "rows in the fleet": rows, "messages": len(self.listener.messages),
-            "memory": f"{rate:.2f} ± {error:.2f} MiB/h over the last half, {self.samples[-1][1] / 1024 if self.samples else 0:.1f} MiB at the end",
+            "memory": f"{rate:.2f} ± {error:.2f} MiB/h over the last half, "
+                      f"{self.samples[-1][1] / 1024 if self.samples else 0:.1f} MiB at the end",
             "status page": f"{len(told)} answers, slowest {max(told, default=0):.2f} s",
         })
 
@@ -355,7 +364,7 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     folder.chmod(0o755)
     soak = Soak(a, folder)
-    for number in (signal.SIGTERM, signal.SIGHUP):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, lambda *_: (_ for _ in ()).throw(KeyboardInterrupt()))
     code = 1
     try:

@@ -27,6 +27,8 @@ Expected<CellServer> CellServer::start(const CellServerOptions& options,
         SEAM_TRY(auto camera, ServedCamera::open(cell, settings));
         server.camera_ = std::move(camera);
         server.camera_address_ = server.camera_->address();
+        settings["address"] = server.camera_address_;
+        server.camera_settings_ = std::move(settings);
     }
     if (!options.gocator.is_null()) {
         SEAM_TRY(auto gocator, ServedGocator::open(cell, options.gocator));
@@ -37,6 +39,17 @@ Expected<CellServer> CellServer::start(const CellServerOptions& options,
         server.controllers_.emplace_back(c.name, std::move(controller));
     }
     return server;
+}
+
+Expected<void> CellServer::plug_camera(bool in) {
+    if (camera_address_.empty()) return usage_error("the cell has no camera", "cell server");
+    if (!in) {
+        camera_.reset();
+    } else if (!camera_) {
+        SEAM_TRY(auto camera, ServedCamera::open(cell_, camera_settings_));
+        camera_ = std::move(camera);
+    }
+    return {};
 }
 
 }  // namespace seamwright

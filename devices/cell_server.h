@@ -44,6 +44,10 @@ class CellServer {
 
     SimulatedCell& cell() { return *cell_; }
     const std::string& camera_address() const { return camera_address_; }
+    // The camera's cable: without it nothing answers at its address; back in, it stands there again as it was. What is asked
+    // for already is done. Error (device): the address was taken meanwhile; usage: the cell has no camera.
+    Expected<void> plug_camera(bool in);
+    bool camera_plugged() const { return camera_ != nullptr; }
     const ServedGocator* gocator() const { return gocator_.get(); }  // nullptr = none
     using NamedController = std::pair<std::string, std::unique_ptr<SimulatedController>>;
     const std::vector<NamedController>& controllers() const { return controllers_; }
@@ -52,6 +56,7 @@ class CellServer {
     CellServer() = default;
     std::shared_ptr<SimulatedCell> cell_;
     std::string camera_address_;
+    nlohmann::json camera_settings_;
     std::unique_ptr<ServedCamera> camera_;
     std::unique_ptr<ServedGocator> gocator_;
     std::vector<NamedController> controllers_;

@@ -66,6 +66,11 @@ bool known(const std::vector<T>& items, const std::string& id) {
     return false;
 }
 
+bool is_drift_reference(const Project& project, const Spot& spot) {
+    return project.drift &&
+           std::ranges::find(project.drift->spot_ids, spot.id) != project.drift->spot_ids.end();
+}
+
 bool positive(double v) {
     return std::isfinite(v) && v > 0;
 }
@@ -166,6 +171,8 @@ void check_spot(const Project& project, const Spot& spot, Findings& findings) {
     bool used = false;
     for (const Region& region : project.regions)
         for (const std::string& id : region.spot_ids) used = used || id == spot.id;
+    // What the drift watch looks at stands still: no region may use it.
+    used = used || is_drift_reference(project, spot);
     findings.unless(used || !spot.enabled, where, "no region uses it", "add it to a region or switch it off");
 }
 
@@ -292,8 +299,13 @@ std::vector<Error> of_motion(Findings&& findings, bool push) {
 std::vector<Error> motion_findings(const Project& project, bool push) {
     Findings findings;
     findings.concern(Concern::push);
-    findings.unless(!project.regions.empty(), "regions", "the project has no region, nothing can be pushed",
-                    "make a region of the spots");
+    // A part type that is the drift watch's reference is measured where others are pushed.
+    const bool reference = std::ranges::any_of(project.spots, &Spot::enabled) &&
+                           std::ranges::all_of(project.spots, [&](const Spot& s) {
+                               return !s.enabled || is_drift_reference(project, s);
+                           });
+    findings.unless(!project.regions.empty() || reference, "regions",
+                    "the project has no region, nothing can be pushed", "make a region of the spots");
     findings.rigid(project.part.base_from_workobject, "part.base_from_workobject");
     if (auto valid = validate_fields(project.requirements); !valid) findings.add(valid.error());
     findings.concern(Concern::setup);

@@ -477,6 +477,7 @@ struct Station::Impl {
         const auto regions = run.regions.size();
         switch (run.status) {
             case RunStatus::ok:
+                if (regions == 0) return "measured; there is no region to correct";
                 return run.push ? Text("regions corrected and pushed: {}", regions)
                                 : Text("regions corrected, nothing pushed (dry run): {}", regions);
             case RunStatus::pushed:
@@ -656,7 +657,7 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
 
     run.part_id = options.part_id;
     run.type_id = type;
-    run.push = options.push;
+    run.push = options.push && !job.project.regions.empty();  // a reference is measured alone
     run.started_utc = run.finished_utc = utc_now();
     run.status = RunStatus::interrupted;
     run.message = "the program ended while the part was measured";

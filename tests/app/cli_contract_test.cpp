@@ -543,6 +543,46 @@ TEST_F(Cli, DeepJsonIsRefusedByEveryCommandThatReadsJson) {
     }
 }
 
+// What a person or a script makes of the simulated cell while it is served.
+TEST_F(Cli, TheSimulatedCellObeysItsLines) {
+    const std::string lines = write("lines.txt",
+                                    R"(part {"displacement": {"xyz": [1, 2, 3], "abc": [0, 0, 0]}}
+shift {"xyz": [0.5, 0, 0], "abc": [0, 0, 0]}
+shift 7
+camera off
+camera on
+camera sideways
+type left
+stop
+)");
+    const std::string out = (folder / "cell.txt").string();
+    ASSERT_EQ(
+        std::system(
+            ("'" SEAMWRIGHT_PROGRAM "' sim-cell --camera free <'" + lines + "' >'" + out + "' 2>&1").c_str()),
+        0)
+        << slurp(out);
+    std::vector<json> said;
+    std::istringstream text(slurp(out));
+    for (std::string line; std::getline(text, line);)
+        if (line.starts_with("{")) said.push_back(json::parse(line));
+    ASSERT_EQ(said.size(), 9u) << slurp(out);
+    const auto place = [](const json& state) {
+        const auto xyz = state["part"]["displacement"]["xyz"].get<std::vector<double>>();
+        return Eigen::Vector3d(xyz[0], xyz[1], xyz[2]);
+    };
+    EXPECT_NEAR((place(said[1]) - Eigen::Vector3d(1, 2, 3)).norm(), 0, 1e-9);
+    EXPECT_NEAR((place(said[2]) - Eigen::Vector3d(1, 2, 3)).norm(), 0.5, 1e-9)
+        << "a robot that stands off sees the part off";
+    EXPECT_EQ(said[2]["shift"]["xyz"][0], 0.5);
+    EXPECT_EQ(said[3]["ok"], false);
+    EXPECT_EQ(said[4]["camera"]["plugged"], false);
+    EXPECT_EQ(said[5]["camera"]["plugged"], true);
+    EXPECT_EQ(said[5]["camera"]["address"], said[0]["camera"]["address"]);
+    EXPECT_THAT(said[6]["error"].get<std::string>(), HasSubstr("camera on, or camera off"));
+    EXPECT_THAT(said[7]["error"].get<std::string>(), HasSubstr("has no part types"));
+    EXPECT_EQ(said[8]["ok"], true);
+}
+
 TEST_F(Cli, AnswersAreWrittenThroughToWhatIsNoFile) {
     const std::string job = write("job.json", door_job(5, displacement()).dump());
     const auto answer_in = [&](const std::string& target) { return run({"correct", job, "--json", target}); };

@@ -7,6 +7,7 @@
 #include "projects/drift/drift_keeper.h"
 #include "projects/drift/drift_point.h"
 #include "projects/proof/replay.h"
+#include "projects/reuse/part_type_edits.h"
 #include "projects/station/check.h"
 #include "projects/station/watch.h"
 #include "tests/projects/fake_cell.h"
@@ -99,6 +100,30 @@ TEST_F(DriftStation, ABumpStopsProductionUntilAPersonAcknowledges) {
     EXPECT_EQ(part().status, RunStatus::refused);
     acknowledge();
     EXPECT_EQ(part().status, RunStatus::refused) << "what stands elsewhere is never taken for the new place";
+}
+
+// The reference as a part type of its own, which the robot calls between the parts.
+TEST_F(DriftStation, AReferenceWithoutRegionsIsMeasuredWhereOthersArePushed) {
+    Project p = *add_part_type(station->project(), {"door", "", 1});
+    p.part_types.push_back({"reference", "", 9});
+    p.spots.back().type_id = "reference";
+    ASSERT_TRUE(station->edit(p));
+    cell->project = p;
+    EXPECT_EQ(runnable_type(p, "reference", true).value_or(""), "reference");
+    RunOptions options;
+    options.push = true;
+    options.part_type = "9";
+    const auto run = station->run(options);
+    ASSERT_TRUE(run) << run.error().sentence();
+    EXPECT_EQ(run->status, RunStatus::ok);
+    EXPECT_EQ(run->message.english(), "measured; there is no region to correct");
+    EXPECT_FALSE(run->push) << "nothing is told to have been pushed";
+    EXPECT_EQ(cell->writes, 0);
+    EXPECT_EQ(station->file().drift_points()->size(), 1u);
+    options.part_type = "door";
+    EXPECT_TRUE(station->run(options)->push);
+    p.drift.reset();
+    EXPECT_FALSE(runnable_type(p, "reference", true)) << "no reference: a type that was forgotten";
 }
 
 TEST_F(DriftStation, AStopOutlivesTheProgram) {

@@ -90,6 +90,17 @@ TEST(Check, NamesEveryImplausibility) {
     }
 }
 
+TEST(Check, ASpotOfTheDriftWatchNeedsNoRegion) {
+    Project project = make_fake_cell()->project;
+    const std::size_t before = check(project).size();
+    Spot fixed = project.spots[0];
+    fixed.id = "W1";
+    project.spots.push_back(fixed);
+    EXPECT_EQ(check(project).size(), before + 1);
+    project.drift = DriftWatch{.spot_ids = {"W1"}};
+    EXPECT_EQ(check(project).size(), before);
+}
+
 // A run does not begin with what makes a robot move wrongly; what it can tell by itself does not keep it.
 TEST(Check, GradesWhatConcernsMotion) {
     const Project good = make_fake_cell()->project;

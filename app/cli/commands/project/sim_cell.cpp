@@ -17,6 +17,7 @@
 #include "devices/exchange/settings.h"
 #include "devices/served/served_gocator.h"
 #include "projects/file/project_file.h"
+#include "projects/model/part_types.h"
 #include "projects/station/acquire.h"
 
 namespace seamwright::cli {
@@ -27,10 +28,14 @@ using nlohmann::json;
 struct SimCellArguments {
     std::string settings, project, camera, gocator, fault;
     std::vector<std::string> controllers;
+    double time_scale = 1;
 };
 
 constexpr const char* kWords =
-    "start [PART] | part {JSON: displacement, bend_mm, twist_mm} | mode MODE | fault FAULT | state | stop";
+    "start [PART] | type ID (its measuring program is loaded, calls say it) | part {JSON: displacement, "
+    "bend_mm, twist_mm} | "
+    "shift {JSON: pose} (the robot stands off by that in base) | camera on|off | mode MODE | fault FAULT | "
+    "state | stop";
 
 // "kuka-eki" or "kuka-eki:54600"
 Expected<ServedController> controller_from(const std::string& text) {
@@ -72,7 +77,37 @@ Expected<void> take_serve(json& cell_settings, SimCellArguments& a) {
     return {};
 }
 
-Expected<CellServer> serve(SimCellArguments a, json cell_settings) {
+// The cell with what its PLC knows: the project, and of which type the next part is.
+struct Serving {
+    CellServer server;
+    Project project;
+    PartTypeId type;
+    PartState part;
+    Pose base_from_shifted = Pose::Identity();  // where the robot stands instead
+};
+
+// Seen by a robot that stands off, all that stands before it is moved the other way.
+void place_part(Serving& serving) {
+    SimulatedCell& cell = serving.server.cell();
+    const Pose& base_from_workobject = cell.base_from_workobject();
+    PartState seen = serving.part;
+    seen.workobject_from_movedworkobject = base_from_workobject.inverse() *
+                                           serving.base_from_shifted.inverse() * base_from_workobject *
+                                           serving.part.workobject_from_movedworkobject;
+    cell.set_part(seen);
+}
+
+// All robots' moves, one after the other.
+std::vector<MeasuringMove> program_of(const Project& project) {
+    std::vector<MeasuringMove> all;
+    for (const RobotSetup& robot : project.robots) {
+        auto moves = measuring_program(project, robot.id);
+        all.insert(all.end(), moves.begin(), moves.end());
+    }
+    return all;
+}
+
+Expected<Serving> serve(SimCellArguments a, json cell_settings) {
     SEAM_OK(take_serve(cell_settings, a));
     CellServerOptions options;
     options.cell = cell_settings;
@@ -80,23 +115,30 @@ Expected<CellServer> serve(SimCellArguments a, json cell_settings) {
     if (!a.gocator.empty()) options.gocator = {{"address", a.gocator}};
     for (const std::string& text : a.controllers) {
         SEAM_TRY(auto controller, controller_from(text));
+        if (a.time_scale != 1) controller.settings["time_scale"] = a.time_scale;
         options.controllers.push_back(std::move(controller));
     }
+    Project project;
     if (!a.project.empty()) {
         SEAM_TRY(auto file, ProjectFile::open(a.project, FileAccess::read_only));
-        SEAM_TRY(auto project, file.load());
-        for (const RobotSetup& robot : project.robots) {
-            auto program = measuring_program(project, robot.id);
-            options.program.insert(options.program.end(), program.begin(), program.end());
-        }
+        SEAM_TRY(project, file.load());
+        options.program = program_of(project);
     }
-    return CellServer::start(options);
+    SEAM_TRY(auto server, CellServer::start(options));
+    const PartState part = server.cell().part();
+    return Serving{std::move(server), std::move(project), {}, part};
 }
 
-json state_json(CellServer& server) {
+json state_json(Serving& serving) {
+    CellServer& server = serving.server;
     json state = {{"mode", to_string(server.cell().mode())},
                   {"part", server.cell().describe()},
+                  {"type", serving.type.text()},
+                  {"shift", pose_json(serving.base_from_shifted)},
+                  {"frames", json::object()},
                   {"controllers", json::array()}};
+    for (const auto& [name, taught] : server.cell().settings().robot.frames)
+        if (const auto frame = server.cell().read_frame(name)) state["frames"][name] = pose_json(*frame);
     for (const auto& [name, controller] : server.controllers()) {
         json c = {{"name", name},
                   {"port", controller->port()},
@@ -110,7 +152,9 @@ json state_json(CellServer& server) {
     if (server.camera_address().empty())
         state["camera"] = nullptr;
     else
-        state["camera"] = {{"address", server.camera_address()}, {"serial", server.cell().settings().serial}};
+        state["camera"] = {{"address", server.camera_address()},
+                           {"serial", server.cell().settings().serial},
+                           {"plugged", server.camera_plugged()}};
     state["gocator"] = nullptr;
     if (const ServedGocator* gocator = server.gocator())
         state["gocator"] = {{"control_port", gocator->control_port()},
@@ -120,20 +164,39 @@ json state_json(CellServer& server) {
 }
 
 // One line of standard input. The answer is one line of JSON.
-json obey(CellServer& server, const std::string& line, bool& stop) {
+json obey(Serving& serving, const std::string& line, bool& stop) {
+    CellServer& server = serving.server;
     std::istringstream words(line);
     std::string word, rest;
     words >> word;
     std::getline(words >> std::ws, rest);
     const auto refuse = [&](const std::string& why) { return json{{"ok", false}, {"error", why}}; };
     if (word == "start") {
-        for (const auto& [name, controller] : server.controllers()) controller->press_start(PartId(rest));
+        for (const auto& [name, controller] : server.controllers())
+            controller->press_start(PartId(rest), serving.type);
+    } else if (word == "type") {
+        const auto type = called_type(serving.project, rest);
+        if (!type) return refuse(type.error().sentence());
+        serving.type = PartTypeId(*type);
+        server.cell().store_program(program_of(of_type(serving.project, *type)));
     } else if (word == "part") {
         const auto state = parse_json(rest, "part");
         if (!state) return refuse(state.error().sentence());
         auto part = parse_part_state(*state);
         if (!part) return refuse(part.error().sentence());
-        server.cell().set_part(*part);
+        serving.part = *part;
+        place_part(serving);
+    } else if (word == "shift") {
+        const auto said = parse_json(rest, "shift");
+        if (!said) return refuse(said.error().sentence());
+        const auto shift = parse_pose(*said, "shift");
+        if (!shift) return refuse(shift.error().sentence());
+        serving.base_from_shifted = *shift;
+        place_part(serving);
+    } else if (word == "camera") {
+        if (rest != "on" && rest != "off") return refuse("say: camera on, or camera off");
+        if (const auto plugged = server.plug_camera(rest == "on"); !plugged)
+            return refuse(plugged.error().sentence());
     } else if (word == "mode") {
         const auto mode = robot_mode_from_string(rest);
         if (!mode) return refuse("there is no mode \"" + rest + "\"");
@@ -147,7 +210,7 @@ json obey(CellServer& server, const std::string& line, bool& stop) {
     } else if (word != "state") {
         return refuse("\"" + word + "\" is none of: " + kWords);
     }
-    json answer = state_json(server);
+    json answer = state_json(serving);
     answer["ok"] = true;
     return answer;
 }
@@ -159,13 +222,13 @@ Expected<Answer> sim_cell(const SimCellArguments& a) {
         settings = std::move(read);
     }
     const auto stop = stop_on_signal();
-    SEAM_TRY(auto server, serve(a, settings));
+    SEAM_TRY(auto serving, serve(a, settings));
     if (!a.fault.empty()) {
         const auto fault = controller_fault_from(a.fault);
         if (!fault) return usage_error(Text("there is no fault \"{}\"", a.fault), "--fault");
-        for (const auto& [name, controller] : server.controllers()) controller->set_fault(*fault);
+        for (const auto& [name, controller] : serving.server.controllers()) controller->set_fault(*fault);
     }
-    std::cout << state_json(server).dump() << std::endl;
+    std::cout << state_json(serving).dump() << std::endl;
     bool done = false, input = true;
     std::string pending;
     while (!done && !stop.stop_requested()) {
@@ -182,13 +245,13 @@ Expected<Answer> sim_cell(const SimCellArguments& a) {
             const std::string line = pending.substr(0, end);
             pending.erase(0, end + 1);
             if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-            std::cout << obey(server, line, done).dump(-1, ' ', false, json::error_handler_t::replace)
+            std::cout << obey(serving, line, done).dump(-1, ' ', false, json::error_handler_t::replace)
                       << std::endl;
         }
         if (pending.size() > 65536) return input_error("a line of over 65536 bytes", "standard input");
     }
     Answer answer;
-    answer.json = state_json(server);
+    answer.json = state_json(serving);
     answer.json["status"] = "stopped";
     answer.text = "stopped\n";
     return answer;
@@ -226,6 +289,12 @@ void add_sim_cell(CommandLine& line) {
     command->add_option("--gocator", a->gocator, "Serve it as a Gocator on this address instead")
         ->type_name("ADDRESS");
     command->add_option("--controller", a->controllers, "Repeatable: " + known)->type_name("NAME[:PORT]");
+    command
+        ->add_option(
+            "--time-scale", a->time_scale,
+            "The robots do everything so many times as fast; of controllers whose programs are executed")
+        ->check(CLI::Range(0.01, 100.0))
+        ->capture_default_str();
     command->add_option("--fault", a->fault, "What the controllers do wrong: " + faults);
     line.on(command, [a] { return sim_cell(*a); });
 }

@@ -29,7 +29,9 @@ Seen seen(SimulatedCell& cell, const DoorSpot& spot, std::uint64_t frame_seed,
     EXPECT_TRUE(find_peaks(frame.image, {}, peaks));
     to_millimetres(peaks, cell.sensor_model(), candidates);
     EXPECT_TRUE(track_stripe(candidates, {}, seen.profile));
-    if (taught) EXPECT_NE(taught->track(candidates, {}, seen.told).value(), StripeChoice::undecided);
+    if (taught) {
+        EXPECT_NE(taught->track(candidates, {}, seen.told).value(), StripeChoice::undecided);
+    }
     for (const StripeSample& s : lit) seen.ghosts += s.ghost;
     return seen;
 }

@@ -12,6 +12,7 @@
 #include "app/studio/studio.h"
 #include "widgets/dialogs/gap_dialog.h"
 #include "widgets/dialogs/path_dialog.h"
+#include "widgets/dialogs/place_dialog.h"
 #include "widgets/dialogs/program_dialog.h"
 #include "widgets/dialogs/record_dialog.h"
 #include "widgets/pages/run_page.h"
@@ -74,6 +75,11 @@ void MainWindow::make_file_menu() {
     file->addAction(
         action("corrected_path", "push", tr("Path corrected by a run..."), QKeySequence("Ctrl+P"), [this] {
             show_dialog("path_dialog", [this] { return new PathDialog(desk_, *views_.scene, this); });
+        }));
+    file->addAction(action(
+        "spots_from_drawing", "teach", tr("Spots from the drawing..."), QKeySequence("Ctrl+D"), [this] {
+            show_dialog("place_dialog", [this] { return new PlaceDialog(desk_, *views_.scene, this); });
+            views_.raise(views_.scene);
         }));
     file->addAction(action("robot_program", "robot", tr("Program for the robot's controller..."), {}, [this] {
         show_dialog("program_dialog", [this] { return new ProgramDialog(desk_, this); });

@@ -53,6 +53,7 @@ bool opengl_available() {
 SceneCanvas::SceneCanvas(QWidget* parent) : QWidget(parent) {
     setAttribute(Qt::WA_OpaquePaintEvent);
     setFocusPolicy(Qt::StrongFocus);
+    setMouseTracking(true);
     surface_.setFormat(scene_format());
     surface_.create();
     window_->SetOwnContext(0);
@@ -222,7 +223,10 @@ void SceneCanvas::mousePressEvent(QMouseEvent* event) {
 }
 
 void SceneCanvas::mouseMoveEvent(QMouseEvent* event) {
-    if (event->buttons() == Qt::NoButton) return;
+    if (event->buttons() == Qt::NoButton) {
+        if (on_hover) on_hover(event->position());
+        return;
+    }
     const QPointF at = event->position(), step = at - last_;
     dragged_ = dragged_ || (at - press_).manhattanLength() > 4;
     if (!dragged_) return;

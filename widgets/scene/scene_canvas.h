@@ -41,6 +41,7 @@ class SceneCanvas : public QWidget {
     // Where the ray through a pixel meets the actor.
     std::optional<Eigen::Vector3d> pick(const QPointF& at, vtkActor& actor);
     std::function<void(const QPointF&)> on_click;
+    std::function<void(const QPointF&)> on_hover;  // no button pressed
     // A line drawn around something: with the right button, or with the left one while `lasso` is set.
     std::function<void(const QPolygonF&)> on_encircled;
     bool lasso = false;

@@ -351,6 +351,32 @@ vtkSmartPointer<vtkPolyData> draw_path(const ScenePath& path, double scale, cons
     return painter.take();
 }
 
+vtkSmartPointer<vtkPolyData> draw_edges(const std::vector<SceneEdge>& edges,
+                                        const std::vector<std::string>& chosen, const std::string& lit,
+                                        const std::vector<SceneSpot>& proposed, const QPalette& palette) {
+    constexpr double kThick = 1.2, kGhost = 3, kLook = 40;  // mm
+    ScenePainter painter;
+    const QColor quiet = style::quiet_text(palette), strong = style::selection(palette);
+    for (const SceneEdge& edge : edges) {
+        const bool taken = std::find(chosen.begin(), chosen.end(), edge.id) != chosen.end();
+        const bool on = edge.id == lit;
+        for (std::size_t i = 1; i < edge.points_mm.size(); ++i) {
+            const Eigen::Vector3d &a = edge.points_mm[i - 1], &b = edge.points_mm[i];
+            if (taken || on)
+                painter.tube(a, kThick, b, kThick, on && !taken ? strong.lighter(130) : strong);
+            else
+                painter.line(a, b, quiet);
+        }
+    }
+    for (const SceneSpot& spot : proposed) {
+        const Eigen::Vector3d at = spot.workobject_from_sensor * spot.reference_mm;
+        const Eigen::Vector3d up = -(spot.workobject_from_sensor.linear() * Eigen::Vector3d::UnitZ());
+        painter.ball(at, kGhost, strong);
+        painter.line(at, at + kLook * up, strong);
+    }
+    return painter.take();
+}
+
 vtkSmartPointer<vtkPolyData> draw_robot(const std::optional<SceneRobot>& robot,
                                         const std::optional<SceneRobot>& next, const QPalette& palette) {
     ScenePainter painter;

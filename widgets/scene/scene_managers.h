@@ -72,6 +72,11 @@ struct WorstPathPoint {
 };
 std::optional<WorstPathPoint> worst_of(const ScenePath& path);
 vtkSmartPointer<vtkPolyData> draw_path(const ScenePath& path, double scale, const QPalette& palette);
+// Edges of the drawing, those that are chosen and the one under the pointer apart; ghosts of proposed spots with the
+// direction their sensor looks from.
+vtkSmartPointer<vtkPolyData> draw_edges(const std::vector<SceneEdge>& edges,
+                                        const std::vector<std::string>& chosen, const std::string& lit,
+                                        const std::vector<SceneSpot>& proposed, const QPalette& palette);
 vtkSmartPointer<vtkPolyData> draw_robot(const std::optional<SceneRobot>& robot,
                                         const std::optional<SceneRobot>& next, const QPalette& palette);
 // Where a region's weak direction arrow stands: centroid of its spots' references, and half the arrow's

@@ -112,6 +112,10 @@ struct SceneView::Impl {
     std::vector<SceneSpot> spots;
     std::vector<SceneRegion> regions;
     ScenePath path;
+    std::vector<SceneEdge> edges;
+    std::vector<std::string> chosen_edges;
+    std::string lit_edge;
+    std::vector<SceneSpot> proposed;
     std::vector<Eigen::Vector3d> picks;
     std::optional<SceneRobot> robot, next_robot;
     Pose part_shift = Pose::Identity();
@@ -130,10 +134,35 @@ struct SceneView::Impl {
     void redraw_all();
     SceneLabels words() const;
     void paint_words(QPainter& painter) const { words().paint(painter, *canvas); }
+    const SceneEdge* edge_at(const QPointF& at) const;
     void changed() {
         if (canvas) canvas->request_render();
     }
 };
+
+// The nearest on the screen, of several as near the one in front.
+const SceneEdge* SceneView::Impl::edge_at(const QPointF& at) const {
+    constexpr double kNear_px = 12;
+    const SceneEdge* found = nullptr;
+    double best = kNear_px, depth = 1;
+    if (!shown.at(Layer::edges)) return nullptr;
+    for (const SceneEdge& edge : edges) {
+        Eigen::Vector3d before(0, 0, 2);
+        for (const Eigen::Vector3d& point : edge.points_mm) {
+            const Eigen::Vector3d now = canvas->project(point);
+            if (before.z() <= 1 && now.z() <= 1) {
+                const Eigen::Vector2d a = before.head<2>(), d = now.head<2>() - a, p(at.x(), at.y());
+                const double t =
+                    d.squaredNorm() > 0 ? std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0;
+                const double off = (p - a - t * d).norm(), z = before.z() + t * (now.z() - before.z());
+                if (off < best - 1 || (off < best + 1 && off < kNear_px && z < depth))
+                    best = std::min(best, off), depth = z, found = &edge;
+            }
+            before = now;
+        }
+    }
+    return found;
+}
 
 void SceneView::Impl::make_layers() {
     vtkRenderer& renderer = canvas->renderer();
@@ -146,6 +175,7 @@ void SceneView::Impl::make_layers() {
     add(Layer::regions, false, 2);
     add(Layer::corrections, true, 2);
     add(Layer::path, false, 3);
+    add(Layer::edges, false, 2);
     add(Layer::robot, true, 2);
     renderer.SetUseDepthPeeling(false);
     canvas->part = &manager(Layer::part)->actor();
@@ -190,6 +220,9 @@ void SceneView::Impl::redraw(Layer layer) {
         case Layer::path:
             one->set(draw_path(path, scale, palette));
             break;
+        case Layer::edges:
+            one->set(draw_edges(edges, chosen_edges, lit_edge, proposed, palette));
+            break;
         case Layer::robot:
             one->set(draw_robot(robot, next_robot, palette));
             break;
@@ -200,8 +233,8 @@ void SceneView::Impl::redraw(Layer layer) {
 }
 
 void SceneView::Impl::redraw_all() {
-    for (const Layer layer :
-         {Layer::spots, Layer::sensors, Layer::regions, Layer::corrections, Layer::path, Layer::robot})
+    for (const Layer layer : {Layer::spots, Layer::sensors, Layer::regions, Layer::corrections, Layer::path,
+                              Layer::edges, Layer::robot})
         redraw(layer);
 }
 
@@ -225,6 +258,22 @@ SceneLabels SceneView::Impl::words() const {
             if (at.z() <= 1)
                 words.labels.push_back(
                     {{at.x(), at.y()}, SceneView::tr("next pose"), style::selection(palette), true});
+        }
+        for (const SceneEdge& edge : edges) {
+            const bool chosen =
+                std::find(chosen_edges.begin(), chosen_edges.end(), edge.id) != chosen_edges.end();
+            if ((edge.id != lit_edge && !chosen) || edge.points_mm.empty() || !shown.at(Layer::edges))
+                continue;
+            const Eigen::Vector3d at = canvas->project(edge.points_mm[edge.points_mm.size() / 2]);
+            if (at.z() > 1) continue;
+            const QString text = QString::fromStdString(edge.id) + QChar(0x20) + edge.words;
+            words.labels.push_back({{at.x(), at.y()}, text, style::selection(palette), edge.id == lit_edge});
+        }
+        for (const SceneSpot& one : proposed) {
+            const Eigen::Vector3d at = canvas->project(one.workobject_from_sensor * one.reference_mm);
+            if (at.z() <= 1 && shown.at(Layer::edges))
+                words.labels.push_back(
+                    {{at.x(), at.y()}, QString::fromStdString(one.id), style::selection(palette), false});
         }
         for (std::size_t i = 0; i < picks.size(); ++i) {
             const Eigen::Vector3d at = canvas->project(picks[i]);
@@ -285,6 +334,7 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
                                                {tr("Regions"), Layer::regions},
                                                {tr("Corrections"), Layer::corrections},
                                                {tr("Path before and after"), Layer::path},
+                                               {tr("Edges of the drawing"), Layer::edges},
                                                {tr("Robot"), Layer::robot},
                                                {tr("Labels"), Layer::labels}};
     for (const auto& [word, which] : names) {
@@ -307,7 +357,17 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
         setFocusProxy(impl_->canvas);
         impl_->make_layers();
         impl_->canvas->on_paint = [this](QPainter& painter) { impl_->paint_words(painter); };
+        impl_->canvas->on_hover = [this](const QPointF& at) {
+            if (impl_->edges.empty()) return;
+            const SceneEdge* edge = impl_->edge_at(at);
+            const std::string id = edge ? edge->id : std::string();
+            if (id == impl_->lit_edge) return;
+            impl_->lit_edge = id;
+            impl_->redraw(Layer::edges);
+        };
         impl_->canvas->on_click = [this](const QPointF& at) {
+            if (const SceneEdge* edge = impl_->edge_at(at))
+                return emit edge_picked(QString::fromStdString(edge->id));
             const SceneSpot* nearest = nullptr;
             double best = 18;  // px: a gloved click
             for (const SceneSpot& spot : impl_->spots) {
@@ -406,6 +466,24 @@ void SceneView::set_path(const ScenePath& path) {
     if (impl_->path == path) return;
     impl_->path = path;
     impl_->redraw(Layer::path);
+}
+
+void SceneView::set_edges(std::vector<SceneEdge> edges) {
+    impl_->edges = std::move(edges);
+    impl_->chosen_edges.clear();
+    impl_->lit_edge.clear();
+    impl_->redraw(Layer::edges);
+}
+
+void SceneView::choose_edges(const std::vector<std::string>& ids) {
+    if (impl_->chosen_edges == ids) return;
+    impl_->chosen_edges = ids;
+    impl_->redraw(Layer::edges);
+}
+
+void SceneView::set_proposed(const std::vector<SceneSpot>& spots) {
+    impl_->proposed = spots;
+    impl_->redraw(Layer::edges);
 }
 
 void SceneView::set_robot(const std::optional<SceneRobot>& robot) {

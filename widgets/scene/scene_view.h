@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 #include <QImage>
+#include <QString>
 #include <QWidget>
 #include <array>
 #include <cstddef>
@@ -51,6 +52,13 @@ struct ScenePath {
     bool operator==(const ScenePath&) const = default;
 };
 
+// An edge of the drawing, that can be picked.
+struct SceneEdge {
+    std::string id;
+    std::vector<Eigen::Vector3d> points_mm;
+    QString words = {};  // beside its name while the pointer is on it
+};
+
 struct SceneRobot {
     Pose workobject_from_flange = Pose::Identity(), workobject_from_sensor = Pose::Identity();
 };
@@ -64,7 +72,7 @@ struct SceneMesh {
 class SceneView : public QWidget {
     Q_OBJECT
   public:
-    enum class Layer { part, spots, sensors, regions, corrections, path, robot, labels };
+    enum class Layer { part, spots, sensors, regions, corrections, path, edges, robot, labels };
     enum class View { front, back, top, iso, fit };
 
     explicit SceneView(QWidget* parent = nullptr);
@@ -80,6 +88,11 @@ class SceneView : public QWidget {
     void set_spots(const std::vector<SceneSpot>& spots);
     void set_regions(const std::vector<SceneRegion>& regions);
     void set_path(const ScenePath& path);
+    // While there are edges, the one under the pointer lights up, and a click there takes it before spots and part.
+    void set_edges(std::vector<SceneEdge> edges);
+    void choose_edges(const std::vector<std::string>& ids);  // from outside; no signal is sent for it
+    // Spots that are not the project's yet, as ghosts.
+    void set_proposed(const std::vector<SceneSpot>& spots);
     void set_robot(const std::optional<SceneRobot>& robot);
     // Where the robot is to go next, half transparent beside where it stands; belongs to the robot's layer.
     // When one appears, the picture is fitted to both; when it goes, to the part again.
@@ -111,7 +124,8 @@ class SceneView : public QWidget {
   signals:
     void spot_picked(QString id);                    // "" = nothing there
     void part_picked(double x, double y, double z);  // work object, mm
-    void spots_encircled(QStringList ids);           // in the order of measuring; may be none
+    void edge_picked(QString id);
+    void spots_encircled(QStringList ids);  // in the order of measuring; may be none
 
   protected:
     void changeEvent(QEvent* event) override;

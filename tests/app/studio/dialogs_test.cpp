@@ -1,4 +1,5 @@
-// The deeds with a window of their own: the path corrected by a run, the controller's program, the gap along a path.
+// The deeds with a window of their own: the path corrected by a run, the controller's program, spots from the drawing, the
+// gap along a path.
 
 #include <gtest/gtest.h>
 
@@ -6,12 +7,14 @@
 #include <fstream>
 
 #include "app/studio/studio.h"
+#include "devices/drawing/door_step.h"
 #include "devices/exchange/tables/path_csv.h"
 #include "devices/simulated/scene/door.h"
 #include "projects/reuse/simulated_truth.h"
 #include "tests/app/studio/person.h"
 #include "widgets/dialogs/gap_dialog.h"
 #include "widgets/dialogs/path_dialog.h"
+#include "widgets/dialogs/place_dialog.h"
 #include "widgets/dialogs/program_dialog.h"
 #include "widgets/dialogs/record_dialog.h"
 
@@ -160,6 +163,96 @@ TEST_F(Dialogs, TheControllersProgramIsWrittenForTheProjectOnTheScreen) {
     EXPECT_FALSE(write->isEnabled()) << "no spot, no program";
     EXPECT_FALSE(word(*dialog, "program_verdict").isEmpty());
     dialog->grab().save(QString(SEAMWRIGHT_SCREENS) + "/dialog_program.png");
+}
+
+// From the STEP file to spots in the project, with the mouse on the edge in the picture.
+TEST_F(Dialogs, SpotsAreProposedAlongAnEdgeOfTheDrawingAndTaken) {
+    DeskPerson me(window());
+    Desk& desk = studio->desk();
+    const auto step = folder / "door.step";
+    std::ofstream(step) << door_step().value();
+    auto* dialog = opened<PlaceDialog>("spots_from_drawing", "place_dialog");
+    ASSERT_TRUE(dialog);
+    auto* edges = dialog->findChild<QComboBox*>("place_edge");
+    auto* propose = dialog->findChild<QPushButton*>("place_propose");
+    auto* take = dialog->findChild<QPushButton*>("place_take");
+    EXPECT_FALSE(propose->isEnabled());
+    EXPECT_FALSE(take->isEnabled());
+
+    // What is no drawing is a sentence.
+    std::ofstream(folder / "none.step") << "no drawing";
+    dialog->take_file(QString::fromStdString((folder / "none.step").string()));
+    ASSERT_TRUE(me.wait([&] { return !dialog->working(); }));
+    EXPECT_FALSE(word(*dialog, "place_verdict").isEmpty());
+    EXPECT_FALSE(propose->isEnabled());
+
+    dialog->take_file(QString::fromStdString(step.string()));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !dialog->working() && edges->count() > 0; }, 3 * kPatienceMs))
+        << word(*dialog, "place_verdict").toStdString();
+    const Drawing drawing = read_drawing(step).value();
+    EXPECT_EQ(edges->count(), static_cast<int>(drawing.edges.size()));
+    const DrawingEdge* bead = nullptr;
+    for (const DrawingEdge& e : drawing.edges)
+        if (!bead && e.fold_deg > 60 && !e.convex && e.length_mm > 300) bead = &e;
+    ASSERT_TRUE(bead);
+
+    // The edge lights up under the pointer, and a click takes it.
+    window().findChild<QAction*>("show_dock_scene")->trigger();
+    QApplication::processEvents();
+    auto* scene = window().findChild<SceneView*>("scene_view");
+    ASSERT_TRUE(scene);
+    if (scene->has_opengl()) {
+        const QPoint at = scene->to_screen(bead->points[bead->points.size() / 2].point_mm).toPoint();
+        QWidget* canvas = scene->focusProxy();
+        ASSERT_TRUE(canvas);
+        const QPoint there = canvas->mapFrom(scene, at);
+        ASSERT_TRUE(canvas->rect().contains(there));
+        QTest::mouseMove(canvas, there);
+        QTest::mouseClick(canvas, Qt::LeftButton, {}, there);
+        const QString picked = edges->currentData().toString();
+        const auto chain = tangent_chain(drawing, picked.toStdString()).value();
+        EXPECT_TRUE(std::any_of(chain.parts.begin(), chain.parts.end(),
+                                [&](const EdgeChain::Part& p) { return p.edge == bead->id; }) ||
+                    find_edge(drawing, picked.toStdString())->length_mm > 300)
+            << picked.toStdString() << " instead of " << bead->id;
+    }
+    dialog->choose_edge(QString::fromStdString(bead->id));
+    ASSERT_EQ(edges->currentData().toString().toStdString(), bead->id);
+
+    // Cancelled, then proposed with what is wanted out of reach, then enough.
+    dialog->findChild<QSpinBox*>("place_fewest")->setValue(4);
+    dialog->findChild<QSpinBox*>("place_most")->setValue(4);
+    dialog->findChild<NumberBox*>("place_wanted")->setValue(0.001);
+    dialog->propose();
+    EXPECT_TRUE(dialog->working());
+    dialog->findChild<QPushButton*>("place_cancel")->click();
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !dialog->working(); }, 3 * kPatienceMs));
+    EXPECT_TRUE(word(*dialog, "place_verdict").contains("cancel", Qt::CaseInsensitive))
+        << word(*dialog, "place_verdict").toStdString();
+    dialog->findChild<NumberBox*>("place_beyond")->setValue(250);
+    dialog->propose();
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !dialog->working(); }, 6 * kPatienceMs));
+    EXPECT_TRUE(word(*dialog, "place_verdict").contains("Not enough"))
+        << word(*dialog, "place_verdict").toStdString();
+    EXPECT_FALSE(take->isEnabled()) << "what is not enough is not taken";
+    dialog->findChild<NumberBox*>("place_wanted")->setValue(2);
+    EXPECT_EQ(dialog->findChild<QTableWidget*>("place_spots")->rowCount(), 0) << "of another question";
+    dialog->propose();
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !dialog->working(); }, 6 * kPatienceMs));
+    ASSERT_TRUE(take->isEnabled()) << word(*dialog, "place_verdict").toStdString();
+    EXPECT_EQ(dialog->findChild<QTableWidget*>("place_spots")->rowCount(), 4);
+    QApplication::processEvents();
+    dialog->grab().save(QString(SEAMWRIGHT_SCREENS) + "/dialog_place.png");
+    me.picture("spots_from_drawing");
+
+    const auto before = desk.project().spots.size();
+    take->click();
+    EXPECT_EQ(desk.project().spots.size(), before + 4) << word(*dialog, "place_verdict").toStdString();
+    EXPECT_EQ(desk.project().spots.back().reference_state, ReferenceState::from_drawing);
+    EXPECT_FALSE(take->isEnabled());
+    desk.undo_stack().undo();
+    EXPECT_EQ(desk.project().spots.size(), before) << "one step of undo";
+    dialog->close();
 }
 
 // Two sheets that come together to 3 mm in the middle: the plot, the stretch by its spots, and the nozzle that fits once it

@@ -237,6 +237,213 @@
     </message>
 </context>
 <context>
+    <name>seamwright::PlaceDialog</name>
+    <message>
+        <source>%1 mm, %2</source>
+        <translation>%1 mm, %2</translation>
+    </message>
+    <message>
+        <source>fold of %1 degrees</source>
+        <translation>Kante von %1 Grad</translation>
+    </message>
+    <message>
+        <source>free border</source>
+        <translation>freier Rand</translation>
+    </message>
+    <message>
+        <source>smooth</source>
+        <translation>glatt</translation>
+    </message>
+    <message>
+        <source>Spots from the drawing</source>
+        <translation>Messstellen aus der Zeichnung</translation>
+    </message>
+    <message>
+        <source>Drawing</source>
+        <translation>Zeichnung</translation>
+    </message>
+    <message>
+        <source>STEP, IGES, STL, PLY or OBJ, in the work object</source>
+        <translation>STEP, IGES, STL, PLY oder OBJ, im Werkobjekt</translation>
+    </message>
+    <message>
+        <source>Choose the drawing...</source>
+        <translation>Zeichnung wählen...</translation>
+    </message>
+    <message>
+        <source>Edge that the bead follows</source>
+        <translation>Kante, der die Raupe folgt</translation>
+    </message>
+    <message>
+        <source>Or click it in the 3D view. Spots stand along its chain of tangent edges.</source>
+        <translation>Oder in der 3D-Ansicht anklicken. Messstellen stehen entlang ihrer Kette tangentialer Kanten.</translation>
+    </message>
+    <message>
+        <source>For the region</source>
+        <translation>Für die Region</translation>
+    </message>
+    <message>
+        <source>Its limits and free degrees hold, and it takes the spots</source>
+        <translation>Ihre Grenzen und freien Grade gelten, und sie nimmt die Messstellen auf</translation>
+    </message>
+    <message>
+        <source>Wanted 3 sigma across the bead</source>
+        <translation>Gewünschte 3 Sigma quer zur Raupe</translation>
+    </message>
+    <message>
+        <source>At its worst point</source>
+        <translation>An ihrem schlechtesten Punkt</translation>
+    </message>
+    <message>
+        <source> mm</source>
+        <translation> mm</translation>
+    </message>
+    <message>
+        <source>How many spots may be proposed</source>
+        <translation>Wie viele Messstellen vorgeschlagen werden dürfen</translation>
+    </message>
+    <message>
+        <source>Spots, at least</source>
+        <translation>Messstellen, mindestens</translation>
+    </message>
+    <message>
+        <source>Spots, at most</source>
+        <translation>Messstellen, höchstens</translation>
+    </message>
+    <message>
+        <source>Sensor turned about the edge by up to</source>
+        <translation>Sensor um die Kante gedreht um bis zu</translation>
+    </message>
+    <message>
+        <source>0: the middle of the two faces alone</source>
+        <translation>0: nur die Mitte der beiden Flächen</translation>
+    </message>
+    <message>
+        <source> degrees</source>
+        <translation> Grad</translation>
+    </message>
+    <message>
+        <source>Beyond the edge&apos;s ends by up to</source>
+        <translation>Über die Enden der Kante hinaus um bis zu</translation>
+    </message>
+    <message>
+        <source>Along its chain. A part that bends is measured best near its bead</source>
+        <translation>Entlang ihrer Kette. Ein Teil, das sich biegt, wird am besten nahe seiner Raupe gemessen</translation>
+    </message>
+    <message>
+        <source>Noise of a profile&apos;s point</source>
+        <translation>Rauschen eines Profilpunkts</translation>
+    </message>
+    <message>
+        <source>One standard deviation</source>
+        <translation>Eine Standardabweichung</translation>
+    </message>
+    <message>
+        <source>Any single spot may be lost</source>
+        <translation>Jede einzelne Messstelle darf ausfallen</translation>
+    </message>
+    <message>
+        <source>The bead is known well enough without it too</source>
+        <translation>Auch ohne sie ist die Raupe gut genug bekannt</translation>
+    </message>
+    <message>
+        <source>Propose spots</source>
+        <translation>Messstellen vorschlagen</translation>
+    </message>
+    <message>
+        <source>The fewest that are enough, then the shortest way</source>
+        <translation>Die wenigsten, die genügen, dann der kürzeste Weg</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>Abbrechen</translation>
+    </message>
+    <message>
+        <source>Stops reading or proposing</source>
+        <translation>Hält Lesen oder Vorschlagen an</translation>
+    </message>
+    <message>
+        <source>Spot</source>
+        <translation>Messstelle</translation>
+    </message>
+    <message>
+        <source>Along, mm</source>
+        <translation>Entlang, mm</translation>
+    </message>
+    <message>
+        <source>Turned, degrees</source>
+        <translation>Gedreht, Grad</translation>
+    </message>
+    <message>
+        <source>Sigma, mm</source>
+        <translation>Sigma, mm</translation>
+    </message>
+    <message>
+        <source>Feature</source>
+        <translation>Merkmal</translation>
+    </message>
+    <message>
+        <source>In the order of the way; sigma of the feature, the larger one</source>
+        <translation>In der Reihenfolge des Wegs; Sigma des Merkmals, das größere</translation>
+    </message>
+    <message>
+        <source>Take them into the project</source>
+        <translation>Ins Projekt übernehmen</translation>
+    </message>
+    <message>
+        <source>From the drawing, not confirmed: nothing is pushed by them until they are measured</source>
+        <translation>Aus der Zeichnung, nicht bestätigt: nichts wird mit ihnen übertragen, bis sie gemessen sind</translation>
+    </message>
+    <message>
+        <source>Close</source>
+        <translation>Schließen</translation>
+    </message>
+    <message>
+        <source>The drawing leaves the scene</source>
+        <translation>Die Zeichnung verlässt die Szene</translation>
+    </message>
+    <message>
+        <source>a new one</source>
+        <translation>eine neue</translation>
+    </message>
+    <message>
+        <source>Choose the part&apos;s drawing.</source>
+        <translation>Wählen Sie die Zeichnung des Teils.</translation>
+    </message>
+    <message>
+        <source>Drawings (*.step *.stp *.iges *.igs *.stl *.ply *.obj);;All files (*)</source>
+        <translation>Zeichnungen (*.step *.stp *.iges *.igs *.stl *.ply *.obj);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>The drawing has no edge that a bead could follow.</source>
+        <translation>Die Zeichnung hat keine Kante, der eine Raupe folgen könnte.</translation>
+    </message>
+    <message>
+        <source>Click the edge that the bead follows in the 3D view, or choose it from the list.</source>
+        <translation>Klicken Sie in der 3D-Ansicht auf die Kante, der die Raupe folgt, oder wählen Sie sie aus der Liste.</translation>
+    </message>
+    <message>
+        <source>%1 spots on %2 mm of way: 3 sigma %3 mm at the worst point of the bead, wanted %4</source>
+        <translation>%1 Messstellen auf %2 mm Weg: 3 Sigma %3 mm am schlechtesten Punkt der Raupe, gewünscht %4</translation>
+    </message>
+    <message>
+        <source>; %1 mm with the worst spot lost</source>
+        <translation>; %1 mm, wenn die schlechteste Messstelle ausfällt</translation>
+    </message>
+    <message>
+        <source>. No set of as many gets below %1 mm.</source>
+        <translation>. Keine Auswahl von ebenso vielen kommt unter %1 mm.</translation>
+    </message>
+    <message>
+        <source>Not enough: allow more spots, or a wider tolerance.</source>
+        <translation>Nicht genug: mehr Messstellen oder eine weitere Toleranz zulassen.</translation>
+    </message>
+    <message>
+        <source>%1 spots are in region %2, from the drawing: confirm each on the part (step Teach) before anything is pushed.</source>
+        <translation>%1 Messstellen sind in Region %2, aus der Zeichnung: Bestätigen Sie jede am Teil (Schritt Einlernen), bevor etwas übertragen wird.</translation>
+    </message>
+</context>
+<context>
     <name>seamwright::StripePanel</name>
     <message>
         <source>Stripe in the image</source>
@@ -4188,6 +4395,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <source>Manual: %1</source>
         <translation>Handbuch: %1</translation>
     </message>
+    <message>
+        <source>Spots from the drawing...</source>
+        <translation>Messstellen aus der Zeichnung...</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::ManualWindow</name>
@@ -5509,6 +5720,10 @@ ausgelassen</translation>
     <message>
         <source>No 3D picture: this display offers no OpenGL 3.2. Everything else works; measuring, correcting and pushing do not need it. Cure: a graphics driver with OpenGL 3.2, or Mesa&apos;s software renderer (LIBGL_ALWAYS_SOFTWARE=1).</source>
         <translation>Kein 3D-Bild: dieser Bildschirm bietet kein OpenGL 3.2. Alles andere geht; Messen, Korrigieren und Übertragen brauchen es nicht. Abhilfe: ein Grafiktreiber mit OpenGL 3.2 oder Mesas Softwarezeichner (LIBGL_ALWAYS_SOFTWARE=1).</translation>
+    </message>
+    <message>
+        <source>Edges of the drawing</source>
+        <translation>Kanten der Zeichnung</translation>
     </message>
 </context>
 <context>

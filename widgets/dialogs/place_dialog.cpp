@@ -70,7 +70,7 @@ PlaceDialog::PlaceDialog(Desk& desk, SceneView& scene, QWidget* parent)
     const auto count = [&](const char* name, const QString& label, int value) {
         auto* n = new QSpinBox;
         n->setObjectName(QString::fromLatin1(name));
-        n->setRange(1, kMostSpots);
+        n->setRange(2, kMostSpots);
         n->setValue(value);
         n->setFocusPolicy(Qt::StrongFocus);
         add_field(*box, label, n, tr("How many spots may be proposed"));

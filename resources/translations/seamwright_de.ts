@@ -271,12 +271,12 @@
         <translation>Zeichnung wählen...</translation>
     </message>
     <message>
-        <source>Edge that the bead follows</source>
-        <translation>Kante, der die Raupe folgt</translation>
+        <source>Edge of the bead</source>
+        <translation>Kante der Raupe</translation>
     </message>
     <message>
-        <source>Or click it in the 3D view. Spots stand along its chain of tangent edges.</source>
-        <translation>Oder in der 3D-Ansicht anklicken. Messstellen stehen entlang ihrer Kette tangentialer Kanten.</translation>
+        <source>The bead follows it. Or click it in the 3D view; spots stand along its chain of tangent edges.</source>
+        <translation>Ihr folgt die Raupe. Oder in der 3D-Ansicht anklicken; Messstellen stehen entlang ihrer Kette tangentialer Kanten.</translation>
     </message>
     <message>
         <source>For the region</source>
@@ -287,12 +287,12 @@
         <translation>Ihre Grenzen und freien Grade gelten, und sie nimmt die Messstellen auf</translation>
     </message>
     <message>
-        <source>Wanted 3 sigma across the bead</source>
-        <translation>Gewünschte 3 Sigma quer zur Raupe</translation>
+        <source>Wanted 3 sigma</source>
+        <translation>Gewünschte 3 Sigma</translation>
     </message>
     <message>
-        <source>At its worst point</source>
-        <translation>An ihrem schlechtesten Punkt</translation>
+        <source>Across the bead, at its worst point</source>
+        <translation>Quer zur Raupe, an ihrem schlechtesten Punkt</translation>
     </message>
     <message>
         <source> mm</source>
@@ -311,32 +311,32 @@
         <translation>Messstellen, höchstens</translation>
     </message>
     <message>
-        <source>Sensor turned about the edge by up to</source>
-        <translation>Sensor um die Kante gedreht um bis zu</translation>
+        <source>Turned by up to</source>
+        <translation>Gedreht um bis zu</translation>
     </message>
     <message>
-        <source>0: the middle of the two faces alone</source>
-        <translation>0: nur die Mitte der beiden Flächen</translation>
+        <source>The sensor about the edge; 0: the middle of the two faces alone</source>
+        <translation>Der Sensor um die Kante; 0: nur die Mitte der beiden Flächen</translation>
     </message>
     <message>
         <source> degrees</source>
         <translation> Grad</translation>
     </message>
     <message>
-        <source>Beyond the edge&apos;s ends by up to</source>
-        <translation>Über die Enden der Kante hinaus um bis zu</translation>
+        <source>Beyond its ends by up to</source>
+        <translation>Über ihre Enden um bis zu</translation>
     </message>
     <message>
-        <source>Along its chain. A part that bends is measured best near its bead</source>
-        <translation>Entlang ihrer Kette. Ein Teil, das sich biegt, wird am besten nahe seiner Raupe gemessen</translation>
+        <source>Of the edge, along its chain. A part that bends is measured best near its bead</source>
+        <translation>Der Kante, entlang ihrer Kette. Ein Teil, das sich biegt, wird am besten nahe seiner Raupe gemessen</translation>
     </message>
     <message>
-        <source>Noise of a profile&apos;s point</source>
-        <translation>Rauschen eines Profilpunkts</translation>
+        <source>Noise of a point</source>
+        <translation>Rauschen eines Punkts</translation>
     </message>
     <message>
-        <source>One standard deviation</source>
-        <translation>Eine Standardabweichung</translation>
+        <source>Of a profile, one standard deviation</source>
+        <translation>Eines Profils, eine Standardabweichung</translation>
     </message>
     <message>
         <source>Any single spot may be lost</source>

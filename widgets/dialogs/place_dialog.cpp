@@ -16,7 +16,9 @@
 namespace seamwright {
 namespace {
 
-constexpr int kPlaceDialogWidth = 560;
+constexpr int kPlaceDialogWidth = 760;
+constexpr int kRowsSeen = 5;       // of the table, at least
+constexpr double kSmooth_deg = 3;  // less of a fold is none to the eye
 constexpr int kMostSpots = 40;
 constexpr double kAllAlong_mm = 10000;
 constexpr double kChord_mm = 0.02;  // as `seamwright propose` reads drawings
@@ -46,46 +48,56 @@ PlaceDialog::PlaceDialog(Desk& desk, SceneView& scene, QWidget* parent)
     box->addLayout(make_row({choose_}));
     edge_ = new QComboBox;
     edge_->setObjectName("place_edge");
-    add_field(*box, tr("Edge that the bead follows"), edge_,
-              tr("Or click it in the 3D view. Spots stand along its chain of tangent edges."));
+    add_field(
+        *box, tr("Edge of the bead"), edge_,
+        tr("The bead follows it. Or click it in the 3D view; spots stand along its chain of tangent edges."));
     region_ = new QComboBox;
     region_->setObjectName("place_region");
     add_field(*box, tr("For the region"), region_,
               tr("Its limits and free degrees hold, and it takes the spots"));
-    const auto number_box = [&](const char* name, const QString& label, const QString& tip, double low,
-                                double high, double value, int decimals, const QString& unit) {
+    // What is asked for on the left, how on the right.
+    auto *asked = new QVBoxLayout, *how = new QVBoxLayout;
+    auto* columns = new QHBoxLayout;
+    columns->addLayout(asked, 1);
+    columns->addLayout(how, 1);
+    box->addLayout(columns);
+    const auto number_box = [&](QVBoxLayout& column, const char* name, const QString& label,
+                                const QString& tip, double low, double high, double value, int decimals,
+                                const QString& unit) {
         auto* n = new NumberBox;
         n->setObjectName(QString::fromLatin1(name));
         n->setDecimals(decimals);
         n->setRange(low, high);
         n->setValue(value);
         n->setSuffix(unit);
-        add_field(*box, label, n, tip);
+        add_field(column, label, n, tip);
         connect(n, &NumberBox::valueChanged, this, [this] { forget_proposal(); });
         return n;
     };
     const ProposeOptions usual;
-    wanted_ = number_box("place_wanted", tr("Wanted 3 sigma across the bead"), tr("At its worst point"),
-                         0.001, 10, usual.three_sigma_mm, 3, tr(" mm"));
+    wanted_ =
+        number_box(*asked, "place_wanted", tr("Wanted 3 sigma"), tr("Across the bead, at its worst point"),
+                   0.001, 10, usual.three_sigma_mm, 3, tr(" mm"));
     const auto count = [&](const char* name, const QString& label, int value) {
         auto* n = new QSpinBox;
         n->setObjectName(QString::fromLatin1(name));
         n->setRange(2, kMostSpots);
         n->setValue(value);
         n->setFocusPolicy(Qt::StrongFocus);
-        add_field(*box, label, n, tr("How many spots may be proposed"));
+        add_field(*asked, label, n, tr("How many spots may be proposed"));
         connect(n, &QSpinBox::valueChanged, this, [this] { forget_proposal(); });
         return n;
     };
     fewest_ = count("place_fewest", tr("Spots, at least"), usual.fewest);
     most_ = count("place_most", tr("Spots, at most"), usual.most);
-    cone_ = number_box("place_cone", tr("Sensor turned about the edge by up to"),
-                       tr("0: the middle of the two faces alone"), 0, 80, usual.cone_deg, 1, tr(" degrees"));
-    beyond_ = number_box("place_beyond", tr("Beyond the edge's ends by up to"),
-                         tr("Along its chain. A part that bends is measured best near its bead"), 0,
-                         kAllAlong_mm, kAllAlong_mm, 0, tr(" mm"));
-    noise_ = number_box("place_noise", tr("Noise of a profile's point"), tr("One standard deviation"), 0.0005,
-                        1, usual.noise_mm, 4, tr(" mm"));
+    cone_ = number_box(*how, "place_cone", tr("Turned by up to"),
+                       tr("The sensor about the edge; 0: the middle of the two faces alone"), 0, 80,
+                       usual.cone_deg, 1, tr(" degrees"));
+    beyond_ = number_box(*how, "place_beyond", tr("Beyond its ends by up to"),
+                         tr("Of the edge, along its chain. A part that bends is measured best near its bead"),
+                         0, kAllAlong_mm, kAllAlong_mm, 0, tr(" mm"));
+    noise_ = number_box(*how, "place_noise", tr("Noise of a point"),
+                        tr("Of a profile, one standard deviation"), 0.0005, 1, usual.noise_mm, 4, tr(" mm"));
     lost_ = new QCheckBox(tr("Any single spot may be lost"));
     lost_->setObjectName("place_lost");
     lost_->setChecked(usual.one_may_be_lost);
@@ -112,6 +124,7 @@ PlaceDialog::PlaceDialog(Desk& desk, SceneView& scene, QWidget* parent)
     spots_ = make_table("place_spots",
                         {tr("Spot"), tr("Along, mm"), tr("Turned, degrees"), tr("Sigma, mm"), tr("Feature")},
                         tr("In the order of the way; sigma of the feature, the larger one"));
+    spots_->setMinimumHeight((kRowsSeen + 1) * style::kTargetPx);
     box->addWidget(spots_, 1);
     take_ =
         make_button("place_take", "teach", tr("Take them into the project"),

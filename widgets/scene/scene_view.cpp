@@ -260,8 +260,7 @@ SceneLabels SceneView::Impl::words() const {
                     {{at.x(), at.y()}, SceneView::tr("next pose"), style::selection(palette), true});
         }
         for (const SceneEdge& edge : edges) {
-            const bool chosen =
-                std::find(chosen_edges.begin(), chosen_edges.end(), edge.id) != chosen_edges.end();
+            const bool chosen = !chosen_edges.empty() && edge.id == chosen_edges.front();
             if ((edge.id != lit_edge && !chosen) || edge.points_mm.empty() || !shown.at(Layer::edges))
                 continue;
             const Eigen::Vector3d at = canvas->project(edge.points_mm[edge.points_mm.size() / 2]);

@@ -90,7 +90,8 @@ class SceneView : public QWidget {
     void set_path(const ScenePath& path);
     // While there are edges, the one under the pointer lights up, and a click there takes it before spots and part.
     void set_edges(std::vector<SceneEdge> edges);
-    void choose_edges(const std::vector<std::string>& ids);  // from outside; no signal is sent for it
+    // From outside; no signal is sent for it. The first one is named in the picture, the others are its chain.
+    void choose_edges(const std::vector<std::string>& ids);
     // Spots that are not the project's yet, as ghosts.
     void set_proposed(const std::vector<SceneSpot>& spots);
     void set_robot(const std::optional<SceneRobot>& robot);

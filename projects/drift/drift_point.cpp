@@ -21,6 +21,18 @@ const Spot* drift_spot(const Project& project, const std::string& id) {
     return it == project.spots.end() ? nullptr : &*it;
 }
 
+bool is_drift_reference(const Project& project, const Spot& spot) {
+    return project.drift &&
+           std::ranges::find(project.drift->spot_ids, spot.id) != project.drift->spot_ids.end();
+}
+
+bool references_alone(const Project& project) {
+    return project.regions.empty() && std::ranges::any_of(project.spots, &Spot::enabled) &&
+           std::ranges::all_of(project.spots, [&](const Spot& spot) {
+               return !spot.enabled || is_drift_reference(project, spot);
+           });
+}
+
 std::uint32_t drift_mark(const Project& project, const DriftWatch& watch) {
     std::uint32_t mark = 2166136261u;
     for (const std::string& id : watch.spot_ids) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "devices/capture/capture.h"
+#include "projects/drift/drift_point.h"
 #include "projects/file/project_json.h"
 #include "projects/measure/measure.h"
 #include "projects/measure/nozzle.h"
@@ -510,8 +511,14 @@ Facts facts_of(const std::string& type, const Facts& facts) {
 std::vector<CheckItem> checklist(const Project& project, const Facts& facts) {
     if (project.part_types.empty()) return checklist_of_one(project, facts);
     std::vector<CheckItem> items;
-    for (const PartType& type : project.part_types) {
+    // The references' own program corrects nothing: it comes last, with what it owes.
+    auto types = project.part_types;
+    std::ranges::stable_partition(
+        types, [&](const PartType& type) { return !references_alone(of_type(project, type.id)); });
+    for (const PartType& type : types) {
         std::vector<CheckItem> its = checklist_of_one(of_type(project, type.id), facts_of(type.id, facts));
+        if (!items.empty() && references_alone(of_type(project, type.id)))
+            std::erase_if(its, [](const CheckItem& item) { return item.step >= CheckStep::observable; });
         for (CheckItem& item : its) {
             item.why = Text("part type {}: {}", type.id, item.why);
             for (Text& line : item.evidence) line = Text("part type {}: {}", type.id, line);
@@ -521,7 +528,7 @@ std::vector<CheckItem> checklist(const Project& project, const Facts& facts) {
             continue;
         }
         // The first type with something open speaks for the step.
-        for (std::size_t i = 0; i < items.size(); ++i) {
+        for (std::size_t i = 0; i < its.size(); ++i) {
             if (!items[i].done()) continue;
             if (!its[i].done()) {
                 items[i] = std::move(its[i]);

@@ -66,11 +66,6 @@ bool known(const std::vector<T>& items, const std::string& id) {
     return false;
 }
 
-bool is_drift_reference(const Project& project, const Spot& spot) {
-    return project.drift &&
-           std::ranges::find(project.drift->spot_ids, spot.id) != project.drift->spot_ids.end();
-}
-
 bool positive(double v) {
     return std::isfinite(v) && v > 0;
 }
@@ -299,12 +294,7 @@ std::vector<Error> of_motion(Findings&& findings, bool push) {
 std::vector<Error> motion_findings(const Project& project, bool push) {
     Findings findings;
     findings.concern(Concern::push);
-    // A part type that is the drift watch's reference is measured where others are pushed.
-    const bool reference = std::ranges::any_of(project.spots, &Spot::enabled) &&
-                           std::ranges::all_of(project.spots, [&](const Spot& s) {
-                               return !s.enabled || is_drift_reference(project, s);
-                           });
-    findings.unless(!project.regions.empty() || reference, "regions",
+    findings.unless(!project.regions.empty() || references_alone(project), "regions",
                     "the project has no region, nothing can be pushed", "make a region of the spots");
     findings.rigid(project.part.base_from_workobject, "part.base_from_workobject");
     if (auto valid = validate_fields(project.requirements); !valid) findings.add(valid.error());

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "projects/measure/measure.h"
+#include "projects/model/part_types.h"
 #include "projects/proof/known_shift.h"
 #include "tests/projects/door_project.h"
 
@@ -87,6 +88,31 @@ TEST_F(Checklist, EverythingDoneShowsItsEvidence) {
                                      << items[i].why.in(Language::english);
         EXPECT_FALSE(items[i].evidence.empty()) << to_string(items[i].step);
     }
+}
+
+TEST_F(Checklist, AReferenceOfTheDriftWatchIsToBeTaughtButCorrectsNothing) {
+    project.part_types = {{"reference", "", 9}, {"left", "", 1}};
+    for (Spot& spot : project.spots) spot.type_id = "left";
+    for (Region& region : project.regions) region.type_id = "left";
+    Spot fixed = project.spots.front();
+    fixed.id = "W1";
+    fixed.type_id = "reference";
+    project.spots.push_back(fixed);
+    project.drift.emplace().spot_ids = {"W1"};
+    const auto left = std::make_shared<const Project>(of_type(project, "left"));
+    for (auto& [id, setup] : facts.setups) setup = left;
+    FrozenContour f;
+    f.spot_id = "W1";
+    f.status = AlignmentStatus::frozen;
+    f.jitter_mm = fixed.jitter_mm;
+    put(f);
+    const auto items = checklist(project, facts);
+    ASSERT_EQ(items.size(), kCheckSteps.size());
+    for (const CheckItem& i : items) EXPECT_TRUE(i.done()) << to_string(i.step) << ": " << i.why.english();
+    project.spots.back().reference_profile = {};
+    EXPECT_THAT(item(CheckStep::taught).why.english(), testing::HasSubstr("part type reference"));
+    project.drift.reset();
+    EXPECT_FALSE(item(CheckStep::observable).done()) << "a type that was forgotten";
 }
 
 TEST_F(Checklist, NothingIsDoneInAnEmptyProject) {

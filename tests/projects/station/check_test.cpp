@@ -97,7 +97,7 @@ TEST(Check, ASpotOfTheDriftWatchNeedsNoRegion) {
     fixed.id = "W1";
     project.spots.push_back(fixed);
     EXPECT_EQ(check(project).size(), before + 1);
-    project.drift = DriftWatch{.spot_ids = {"W1"}};
+    project.drift.emplace().spot_ids = {"W1"};
     EXPECT_EQ(check(project).size(), before);
 }
 

@@ -11,6 +11,7 @@
 #include "app/studio/main_window.h"
 #include "app/studio/studio.h"
 #include "widgets/dialogs/gap_dialog.h"
+#include "widgets/dialogs/panel_dialog.h"
 #include "widgets/dialogs/path_dialog.h"
 #include "widgets/dialogs/place_dialog.h"
 #include "widgets/dialogs/program_dialog.h"
@@ -165,6 +166,9 @@ void MainWindow::make_measure_menu() {
         }));
     run->addAction(action("gap_check", "measure", tr("Gap along a path..."), {}, [this] {
         show_dialog("gap_dialog", [this] { return new GapDialog(desk_, this); });
+    }));
+    run->addAction(action("panel_fit_dialog", "part", tr("Fit a panel..."), {}, [this] {
+        show_dialog("panel_dialog", [this] { return new PanelDialog(desk_, this); });
     }));
     run->addAction(action("record_session", "save", tr("Record what the devices deliver..."), {}, [this] {
         show_dialog("record_dialog", [this] { return new RecordDialog(desk_, this); });

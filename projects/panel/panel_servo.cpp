@@ -28,7 +28,9 @@ const PanelPlace& place_of(const PanelJob& job, const std::string& id) {
 // What every servoing run has: moves through the gate, and what failed at one of them.
 class Moving : public PanelRun {
   public:
-    using PanelRun::PanelRun;
+    Moving(Station& station, const PanelJob& job, Places& places, const RunOptions& options,
+           const PanelMoved& moved)
+        : PanelRun(station, job, places, options), moved_(moved) {}
 
   protected:
     // Gap and flush of all enabled places, taught ones off. Error: one of them was not measured.
@@ -119,10 +121,17 @@ class Moving : public PanelRun {
         tell(status == RunStatus::refused ? PartVerdict::refused : PartVerdict::failed);
     }
 
+    void tell_moved() {
+        if (moved_) moved_(panel(), moves_);
+    }
+
     bool failed_ = false;
     RunStatus failed_status_ = RunStatus::refused;
     Text failed_why_;
     int moves_ = 0;
+
+  private:
+    const PanelMoved& moved_;
 };
 
 class Learning : public Moving {
@@ -145,6 +154,7 @@ class Learning : public Moving {
                 const Eigen::VectorXd none =
                     Eigen::VectorXd::Zero(2 * static_cast<Eigen::Index>(panel().before.size()));
                 if (failed_ || !move(motion, arrivals())) return none;
+                tell_moved();
                 auto found = values(panel().after);
                 if (!found) failed(RunStatus::device, found.error().text());
                 return found.value_or(none);
@@ -186,8 +196,8 @@ class Learning : public Moving {
 class Servoing : public Moving {
   public:
     Servoing(Station& station, const PanelJob& job, Places& places, const RunOptions& options,
-             const Sensitivity& sensitivity, const ServoingOptions& servoing)
-        : Moving(station, job, places, options), sensitivity_(sensitivity), servoing_(servoing) {}
+             const PanelMoved& moved, const Sensitivity& sensitivity, const ServoingOptions& servoing)
+        : Moving(station, job, places, options, moved), sensitivity_(sensitivity), servoing_(servoing) {}
 
     Expected<RunRecord> servo_run() {
         SEAM_OK(begin());
@@ -266,6 +276,7 @@ class Servoing : public Moving {
             const Eigen::VectorXd off = *found - taught;
             panel().servo->moves.push_back(
                 {motion, std::sqrt(off.squaredNorm() / static_cast<double>(off.size()))});
+            tell_moved();
             return *found;
         };
         const ServoingResult result = servo(sensitivity_, at, taught, servoing_);
@@ -299,7 +310,8 @@ Expected<PanelJob> job_named(Station& station, const std::string& job_id, bool p
 }  // namespace
 
 Expected<LearntPanel> learn_panel(Station& station, const std::string& job_id,
-                                  const ServoingOptions& servoing, const RunOptions& options) {
+                                  const ServoingOptions& servoing, const RunOptions& options,
+                                  const PanelMoved& moved) {
     SEAM_TRY(const PanelJob job, job_named(station, job_id, true));
     const bool small = servoing.step_mm >= 0.05 && servoing.step_mm <= 3 && servoing.step_deg >= 0.005 &&
                        servoing.step_deg <= 0.5;
@@ -310,11 +322,11 @@ Expected<LearntPanel> learn_panel(Station& station, const std::string& job_id,
     RunOptions moving = options;
     moving.push = true;
     if (moving.part_id.empty()) moving.part_id = "sensitivity";
-    return Learning(station, job, places, moving).learn(servoing);
+    return Learning(station, job, places, moving, moved).learn(servoing);
 }
 
 Expected<RunRecord> servo_panel(Station& station, const std::string& job_id, const ServoingOptions& servoing,
-                                const RunOptions& options) {
+                                const RunOptions& options, const PanelMoved& moved) {
     SEAM_TRY(const PanelJob job, job_named(station, job_id, options.push));
     const Text where("panel job {}", job.id);
     if (!job.sensitivity) return usage_error("its sensitivity is not learnt", where, "learn it first");
@@ -334,7 +346,7 @@ Expected<RunRecord> servo_panel(Station& station, const std::string& job_id, con
             Text("its sensitivity cannot be inverted (condition {:.0f})", sensitivity.condition), where,
             "measure at more places, in other directions, and learn it anew");
     SEAM_TRY(auto places, panel_running::prepare(station, job));
-    return Servoing(station, job, places, options, sensitivity, scaled).servo_run();
+    return Servoing(station, job, places, options, moved, sensitivity, scaled).servo_run();
 }
 
 }  // namespace seamwright

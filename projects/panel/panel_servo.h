@@ -12,6 +12,8 @@
 // to first order. A learning step is a known motion, made as exactly as the robot arrives: twice the covariance of an
 // arrival, or the places' sigma where that is not stated.
 
+#include <functional>
+
 #include "core/panel/servoing.h"
 #include "projects/panel/panel_station.h"
 
@@ -28,22 +30,29 @@ inline ServoingOptions device_servoing() {
     return options;
 }
 
+// Two a degree of freedom.
+inline constexpr int kLearningMoves = 12;
+
+// Called on the running thread where the panel was measured: after `moves` moves, 0 = where it came; `so_far` is not stored yet.
+using PanelMoved = std::function<void(const PanelRecord& so_far, int moves)>;
+
 struct LearntPanel {
     PanelJob job;  // with its sensitivity, where it is usable
     double condition = 0;
     bool usable = false;
     RunRecord run;  // of the learning: nothing is released, the frame is as before
 };
-// Twelve known moves, two a degree of freedom, with whatever panel and body stand there. Error: as run_panel(), a step that
+// kLearningMoves known moves, with whatever panel and body stand there. Error: as run_panel(), a step that
 // is not small (0.05 to 3 mm, 0.005 to 0.5 degrees), a move that was refused or failed.
 Expected<LearntPanel> learn_panel(Station& station, const std::string& job_id,
-                                  const ServoingOptions& servoing, const RunOptions& options);
+                                  const ServoingOptions& servoing, const RunOptions& options,
+                                  const PanelMoved& moved = {});
 
 // One panel, as run_panel(): the record is in the file when this returns, PanelRecord::servo tells the moves and `fit` the
 // single step beside them. Refused: the first move by the gate, a move that makes the deviations grow, values that stand
 // still out of tolerance. A dry run says where the first move would lead. Error besides: the sensitivity is not learnt, or
 // of other places; it is ill-conditioned.
 Expected<RunRecord> servo_panel(Station& station, const std::string& job_id, const ServoingOptions& servoing,
-                                const RunOptions& options);
+                                const RunOptions& options, const PanelMoved& moved = {});
 
 }  // namespace seamwright

@@ -80,6 +80,12 @@ Expected<PanelJob> teach_panel(Station& station, const PanelJob& draft, const Te
     return taught;
 }
 
+bool is_taught(const PanelJob& job) {
+    return std::all_of(job.places.begin(), job.places.end(), [](const PanelPlace& p) {
+        return !p.enabled || p.panel_reference_mm != p.body_reference_mm;
+    });
+}
+
 Expected<RunRecord> run_panel(Station& station, const std::string& job_id, const RunOptions& options) {
     const std::string path = station.file().path().string();
     if (!station.connected())

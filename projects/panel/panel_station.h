@@ -20,6 +20,9 @@ namespace seamwright {
 // the repeats; the sentence carries the last reason.
 Expected<PanelJob> teach_panel(Station& station, const PanelJob& draft, const TeachOptions& options);
 
+// Whether there is something to bring a panel to: every enabled place has its references.
+bool is_taught(const PanelJob& job);
+
 // One panel. As Station::run: device failures and cancelling end in the record's status, the record is in the
 // file when this returns, the judged run before the first byte is written. RunStatus::ok: moved and found in
 // tolerance; in a dry run: would have been moved. refused: by the gate, by the job's tolerances before the

@@ -4399,6 +4399,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <source>Spots from the drawing...</source>
         <translation>Messstellen aus der Zeichnung...</translation>
     </message>
+    <message>
+        <source>Fit a panel...</source>
+        <translation>Anbauteil einpassen...</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::ManualWindow</name>
@@ -6163,6 +6167,38 @@ ausgelassen</translation>
         <source>The light was not found.</source>
         <translation>Das Licht wurde nicht gefunden.</translation>
     </message>
+    <message>
+        <source>Servoing the panel</source>
+        <translation>Servoing des Anbauteils</translation>
+    </message>
+    <message>
+        <source>Fitting the panel</source>
+        <translation>Einpassen des Anbauteils</translation>
+    </message>
+    <message>
+        <source>Measuring the panel</source>
+        <translation>Messen des Anbauteils</translation>
+    </message>
+    <message>
+        <source>The panel was not measured.</source>
+        <translation>Das Anbauteil wurde nicht gemessen.</translation>
+    </message>
+    <message>
+        <source>Learning the sensitivity</source>
+        <translation>Lernen der Empfindlichkeit</translation>
+    </message>
+    <message>
+        <source>The sensitivity was not learnt.</source>
+        <translation>Die Empfindlichkeit wurde nicht gelernt.</translation>
+    </message>
+    <message>
+        <source>Teaching the panel</source>
+        <translation>Einlernen des Anbauteils</translation>
+    </message>
+    <message>
+        <source>The panel was not taught.</source>
+        <translation>Das Anbauteil wurde nicht eingelernt.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::StepPage</name>
@@ -7236,6 +7272,455 @@ und %1 weitere</translation>
     <message>
         <source>Recordings (*.seam)</source>
         <translation>Aufzeichnungen (*.seam)</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::HeadsPlot</name>
+    <message>
+        <source>Profiles of the chosen place</source>
+        <translation>Profile des gewählten Messorts</translation>
+    </message>
+    <message>
+        <source>Each head&apos;s profile in the place&apos;s frame; thin and dark: both as one, in which gap and flush are measured</source>
+        <translation>Das Profil jedes Kopfs im Koordinatensystem des Messorts; dünn und dunkel: beide als eines, in dem Spalt und Bündigkeit gemessen werden</translation>
+    </message>
+    <message>
+        <source>along the surface, mm</source>
+        <translation>längs der Oberfläche, mm</translation>
+    </message>
+    <message>
+        <source>across, mm</source>
+        <translation>quer, mm</translation>
+    </message>
+    <message>
+        <source>both as one</source>
+        <translation>beide als eines</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::MovesPlot</name>
+    <message>
+        <source>What each move leaves</source>
+        <translation>Was jede Bewegung übrig lässt</translation>
+    </message>
+    <message>
+        <source>Gap and flush off the taught ones, rms over all places; 0: as the panel came; dashed: reached</source>
+        <translation>Spalt und Bündigkeit gegen eingelernt, quadratisches Mittel über alle Messorte; 0: wie das Anbauteil kam; gestrichelt: erreicht</translation>
+    </message>
+    <message>
+        <source>move</source>
+        <translation>Bewegung</translation>
+    </message>
+    <message>
+        <source>rms, mm</source>
+        <translation>RMS, mm</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::PanelDialog</name>
+    <message>
+        <source>Take panel job %1</source>
+        <translation>Greiferaufgabe %1 übernehmen</translation>
+    </message>
+    <message>
+        <source>The panel job was not taken.</source>
+        <translation>Die Greiferaufgabe wurde nicht übernommen.</translation>
+    </message>
+    <message>
+        <source>%1 makes %2 small moves with the panel, %3 mm and %4 degrees to either side, and goes back. Is its way free?</source>
+        <translation>%1 macht mit dem Anbauteil %2 kleine Bewegungen, %3 mm und %4 Grad nach jeder Seite, und kehrt zurück. Ist der Weg frei?</translation>
+    </message>
+    <message>
+        <source>Learn with %1</source>
+        <translation>Mit %1 lernen</translation>
+    </message>
+    <message>
+        <source>%1 goes to the measuring position of %2. What is measured there becomes the taught gap and flush: the panel must be in its zero position. Is it, and is the way free?</source>
+        <translation>%1 fährt in die Messposition von %2. Was dort gemessen wird, gilt als eingelernter Spalt und eingelernte Bündigkeit: Das Anbauteil muss in seiner Nulllage sein. Ist es das, und ist der Weg frei?</translation>
+    </message>
+    <message>
+        <source>Teach %1</source>
+        <translation>%1 einlernen</translation>
+    </message>
+    <message>
+        <source>%1 now  %2
+%1 new  %3</source>
+        <translation>%1 jetzt  %2
+%1 neu  %3</translation>
+    </message>
+    <message>
+        <source>The first move takes %1. There are up to %2 of them, each judged by the gate.</source>
+        <translation>Die erste Bewegung bringt %1. Es sind bis zu %2, jede von der Sicherheitsprüfung beurteilt.</translation>
+    </message>
+    <message>
+        <source>This moves %1.</source>
+        <translation>Das bewegt %1.</translation>
+    </message>
+    <message>
+        <source>Nothing has been sent yet.</source>
+        <translation>Noch wurde nichts gesendet.</translation>
+    </message>
+    <message>
+        <source>Push %1 to %2</source>
+        <translation>%1 an %2 übertragen</translation>
+    </message>
+    <message>
+        <source>The panel is measured and waits for your answer below.</source>
+        <translation>Das Anbauteil ist gemessen und wartet unten auf Ihre Antwort.</translation>
+    </message>
+    <message>
+        <source>The project was changed meanwhile: measure again.</source>
+        <translation>Das Projekt wurde inzwischen geändert: noch einmal messen.</translation>
+    </message>
+    <message>
+        <source>The sensitivity cannot be inverted (condition %1): measure at more places, in other directions. Nothing was kept.</source>
+        <translation>Die Empfindlichkeit lässt sich nicht umkehren (Kondition %1): an mehr Messorten und in anderen Richtungen messen. Nichts wurde behalten.</translation>
+    </message>
+    <message>
+        <source>Learn the sensitivity of %1</source>
+        <translation>Empfindlichkeit von %1 lernen</translation>
+    </message>
+    <message>
+        <source>The sensitivity was not kept.</source>
+        <translation>Die Empfindlichkeit wurde nicht behalten.</translation>
+    </message>
+    <message>
+        <source>The sensitivity is learnt; the frame is as it was.</source>
+        <translation>Die Empfindlichkeit ist gelernt; der Frame ist wie zuvor.</translation>
+    </message>
+    <message>
+        <source>Teach panel job %1</source>
+        <translation>Greiferaufgabe %1 einlernen</translation>
+    </message>
+    <message>
+        <source>The panel was not taught.</source>
+        <translation>Das Anbauteil wurde nicht eingelernt.</translation>
+    </message>
+    <message>
+        <source>Fit a panel</source>
+        <translation>Anbauteil einpassen</translation>
+    </message>
+    <message>
+        <source>Gap and flush at each place, with one sigma; the chosen one&apos;s profiles are below</source>
+        <translation>Spalt und Bündigkeit an jedem Messort, mit einem Sigma; die Profile des gewählten stehen darunter</translation>
+    </message>
+    <message>
+        <source>Panel job</source>
+        <translation>Greiferaufgabe</translation>
+    </message>
+    <message>
+        <source>Of this project</source>
+        <translation>Aus diesem Projekt</translation>
+    </message>
+    <message>
+        <source>run number</source>
+        <translation>Nummer des Laufs</translation>
+    </message>
+    <message>
+        <source>Panel</source>
+        <translation>Anbauteil</translation>
+    </message>
+    <message>
+        <source>Its name in the runs; empty: the run&apos;s number</source>
+        <translation>Sein Name in den Läufen; leer: die Nummer des Laufs</translation>
+    </message>
+    <message>
+        <source>From a file...</source>
+        <translation>Aus Datei...</translation>
+    </message>
+    <message>
+        <source>A panel job (JSON) for this project, or measures of a panel to be fitted by themselves</source>
+        <translation>Eine Greiferaufgabe (JSON) für dieses Projekt, oder Messwerte eines Anbauteils, die für sich eingepasst werden</translation>
+    </message>
+    <message>
+        <source>Panel jobs (*.json);;All files (*)</source>
+        <translation>Greiferaufgaben (*.json);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Teach...</source>
+        <translation>Einlernen...</translation>
+    </message>
+    <message>
+        <source>The panel is in its zero position: gap and flush there become the taught ones</source>
+        <translation>Das Anbauteil ist in seiner Nulllage: Spalt und Bündigkeit dort gelten als eingelernt</translation>
+    </message>
+    <message>
+        <source>Measure</source>
+        <translation>Messen</translation>
+    </message>
+    <message>
+        <source>Nothing is written, nothing is moved by it</source>
+        <translation>Nichts wird geschrieben, nichts dadurch bewegt</translation>
+    </message>
+    <message>
+        <source>Fit in one step...</source>
+        <translation>In einem Schritt einpassen...</translation>
+    </message>
+    <message>
+        <source>Measures, asks, writes the frame through the safety gate and measures again</source>
+        <translation>Misst, fragt, schreibt den Frame durch die Sicherheitsprüfung und misst noch einmal</translation>
+    </message>
+    <message>
+        <source>Servo...</source>
+        <translation>Servoing...</translation>
+    </message>
+    <message>
+        <source>In several moves by the learnt sensitivity, each through the safety gate; asks first</source>
+        <translation>In mehreren Bewegungen nach der gelernten Empfindlichkeit, jede durch die Sicherheitsprüfung; fragt vorher</translation>
+    </message>
+    <message>
+        <source>Learn the sensitivity...</source>
+        <translation>Empfindlichkeit lernen...</translation>
+    </message>
+    <message>
+        <source>Twelve small moves through the safety gate, for servoing; asks first</source>
+        <translation>Zwölf kleine Bewegungen durch die Sicherheitsprüfung, für das Servoing; fragt vorher</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>Abbrechen</translation>
+    </message>
+    <message>
+        <source>Ends it after the move under way; the first frame is written back</source>
+        <translation>Endet nach der laufenden Bewegung; der erste Frame wird zurückgeschrieben</translation>
+    </message>
+    <message>
+        <source>Progress</source>
+        <translation>Fortschritt</translation>
+    </message>
+    <message>
+        <source>Close</source>
+        <translation>Schließen</translation>
+    </message>
+    <message>
+        <source>Ends what was begun here</source>
+        <translation>Beendet, was hier begonnen wurde</translation>
+    </message>
+    <message>
+        <source>Yes</source>
+        <translation>Ja</translation>
+    </message>
+    <message>
+        <source>It is done</source>
+        <translation>Es wird ausgeführt</translation>
+    </message>
+    <message>
+        <source>No</source>
+        <translation>Nein</translation>
+    </message>
+    <message>
+        <source>Nothing is sent to the robot</source>
+        <translation>Nichts wird an den Roboter gesendet</translation>
+    </message>
+    <message>
+        <source>Gripper</source>
+        <translation>Greifer</translation>
+    </message>
+    <message>
+        <source>One step</source>
+        <translation>Ein Schritt</translation>
+    </message>
+    <message>
+        <source>± sigma</source>
+        <translation>± Sigma</translation>
+    </message>
+    <message>
+        <source>Servoing</source>
+        <translation>Servoing</translation>
+    </message>
+    <message>
+        <source>The motion in the gripper&apos;s own frame, with one sigma</source>
+        <translation>Die Bewegung im eigenen Koordinatensystem des Greifers, mit einem Sigma</translation>
+    </message>
+    <message>
+        <source>This project has no panel job: take one from a file, as an entry of &quot;panel_jobs&quot; in an exported project.</source>
+        <translation>Dieses Projekt hat keine Greiferaufgabe: eine aus einer Datei übernehmen, wie ein Eintrag von „panel_jobs“ in einem ausgegebenen Projekt.</translation>
+    </message>
+    <message>
+        <source>Connect the devices first (F4).</source>
+        <translation>Zuerst die Geräte verbinden (F4).</translation>
+    </message>
+    <message>
+        <source>Bring the panel into its zero position, then teach it.</source>
+        <translation>Das Anbauteil in seine Nulllage bringen und dann einlernen.</translation>
+    </message>
+    <message>
+        <source>Measure the panel: nothing is moved by that.</source>
+        <translation>Das Anbauteil messen: Bewegt wird dadurch nichts.</translation>
+    </message>
+    <message>
+        <source>Under way.</source>
+        <translation>Läuft.</translation>
+    </message>
+    <message>
+        <source>Measures from a file: %1. %2 Nothing is kept, nothing moves.</source>
+        <translation>Messwerte aus einer Datei: %1. %2 Nichts wird behalten, nichts bewegt sich.</translation>
+    </message>
+    <message>
+        <source>Run %1, panel %2: %3.</source>
+        <translation>Lauf %1, Anbauteil %2: %3.</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n more reason(s), see the run.</source>
+        <translation>
+            <numerusform>%n weiterer Grund, siehe den Lauf.</numerusform>
+            <numerusform>%n weitere Gründe, siehe den Lauf.</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>%1 ± %2</source>
+        <translation>%1 ± %2</translation>
+    </message>
+    <message>
+        <source>%1 / %2</source>
+        <translation>%1 / %2</translation>
+    </message>
+    <message>
+        <source>in tolerance</source>
+        <translation>in Toleranz</translation>
+    </message>
+    <message>
+        <source>beyond tolerance</source>
+        <translation>außer Toleranz</translation>
+    </message>
+    <message>
+        <source>heads %1 mm</source>
+        <translation>Köpfe %1 mm</translation>
+    </message>
+    <message>
+        <source>switched off</source>
+        <translation>ausgeschaltet</translation>
+    </message>
+    <message>
+        <source>not taught</source>
+        <translation>nicht eingelernt</translation>
+    </message>
+    <message>
+        <source>taught: gap %1, flush %2</source>
+        <translation>eingelernt: Spalt %1, Bündigkeit %2</translation>
+    </message>
+    <message>
+        <source>Place</source>
+        <translation>Messort</translation>
+    </message>
+    <message>
+        <source>Heads</source>
+        <translation>Köpfe</translation>
+    </message>
+    <message>
+        <source>Gap, mm</source>
+        <translation>Spalt, mm</translation>
+    </message>
+    <message>
+        <source>off taught</source>
+        <translation>Abweichung</translation>
+    </message>
+    <message>
+        <source>Flush, mm</source>
+        <translation>Bündigkeit, mm</translation>
+    </message>
+    <message>
+        <source>One step leaves, mm
+gap / flush</source>
+        <translation>Ein Schritt lässt, mm
+Spalt / Bündigkeit</translation>
+    </message>
+    <message>
+        <source>After it, mm
+gap / flush</source>
+        <translation>Danach, mm
+Spalt / Bündigkeit</translation>
+    </message>
+    <message>
+        <source>State</source>
+        <translation>Zustand</translation>
+    </message>
+    <message>
+        <source>left out: contradicts the others</source>
+        <translation>weggelassen: widerspricht den anderen</translation>
+    </message>
+    <message>
+        <source>X, mm</source>
+        <translation>X, mm</translation>
+    </message>
+    <message>
+        <source>Y, mm</source>
+        <translation>Y, mm</translation>
+    </message>
+    <message>
+        <source>Z, mm</source>
+        <translation>Z, mm</translation>
+    </message>
+    <message>
+        <source>A, deg</source>
+        <translation>A, Grad</translation>
+    </message>
+    <message>
+        <source>B, deg</source>
+        <translation>B, Grad</translation>
+    </message>
+    <message>
+        <source>C, deg</source>
+        <translation>C, Grad</translation>
+    </message>
+    <message>
+        <source>the gripper by %1 mm and %2 degrees (X %3  Y %4  Z %5 mm, A %6  B %7  C %8 degrees)</source>
+        <translation>den Greifer um %1 mm und %2 Grad (X %3  Y %4  Z %5 mm, A %6  B %7  C %8 Grad)</translation>
+    </message>
+    <message>
+        <source>reached</source>
+        <translation>erreicht</translation>
+    </message>
+    <message>
+        <source>stands still</source>
+        <translation>steht still</translation>
+    </message>
+    <message>
+        <source>the deviations grow</source>
+        <translation>die Abweichungen wachsen</translation>
+    </message>
+    <message>
+        <source>not reached</source>
+        <translation>nicht erreicht</translation>
+    </message>
+    <message>
+        <source>ill-conditioned</source>
+        <translation>schlecht konditioniert</translation>
+    </message>
+    <message numerus="yes">
+        <source>Servoing, %n move(s): %1, from %2 to %3 mm rms.</source>
+        <translation>
+            <numerusform>Servoing, %n Bewegung: %1, von %2 auf %3 mm RMS.</numerusform>
+            <numerusform>Servoing, %n Bewegungen: %1, von %2 auf %3 mm RMS.</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>One step would leave %1 mm; the two motions are %2 mm and %3 degrees apart.</source>
+        <translation>Ein Schritt ließe %1 mm übrig; die beiden Bewegungen liegen %2 mm und %3 Grad auseinander.</translation>
+    </message>
+    <message>
+        <source>Sensitivity: not learnt. Servoing needs it, one step does not.</source>
+        <translation>Empfindlichkeit: nicht gelernt. Das Servoing braucht sie, ein Schritt nicht.</translation>
+    </message>
+    <message>
+        <source>Sensitivity: learnt %1 by %2 moves of %3 mm and %4 degrees, condition %5.</source>
+        <translation>Empfindlichkeit: gelernt am %1 in %2 Bewegungen von %3 mm und %4 Grad, Kondition %5.</translation>
+    </message>
+    <message>
+        <source>%1 % off the computed one; largest difference: %2, %3 mm a move.</source>
+        <translation>%1 % neben der gerechneten; größter Unterschied: %2, %3 mm je Bewegung.</translation>
+    </message>
+    <message>
+        <source>flush of %1</source>
+        <translation>Bündigkeit von %1</translation>
+    </message>
+    <message>
+        <source>gap of %1</source>
+        <translation>Spalt von %1</translation>
+    </message>
+    <message>
+        <source>Learn it anew, or look at the sensors&apos; calibrations.</source>
+        <translation>Sie neu lernen, oder die Kalibrierungen der Sensoren ansehen.</translation>
     </message>
 </context>
 </TS>

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "tests/app/cli_case.h"
 
@@ -36,6 +37,41 @@ TEST_F(ServoCommand, LearnsKeepsAndServesBesideTheSingleStep) {
     EXPECT_TRUE(b["panel"]["after"].empty());
     EXPECT_EQ(b["panel"]["gate_passed"], true);
     EXPECT_EQ(answer({"replay", file}, 0)["status"], "ok");
+}
+
+TEST_F(ServoCommand, SaysHowFarTheLearntSensitivityIsOffTheComputedOne) {
+    const std::string file = (folder / "try.seam").string();
+    const json a = answer({"panel", file, "--simulated", "--seed", "3", "--servo", "--learn"}, 0);
+    // Sensors and calibrations are the simulation's: noise alone, 0.03 mm or so of a move of 1 mm, is between them.
+    EXPECT_LT(a["beside_computed"]["off_share"].get<double>(), 0.1);
+    EXPECT_LT(a["beside_computed"]["largest_mm"].get<double>(), 0.15);
+    EXPECT_THAT(a["places"], testing::Contains(a["beside_computed"]["place"]));
+}
+
+TEST_F(ServoCommand, TakesAJobFromAnExportIntoAProject) {
+    const std::string file = (folder / "try.seam").string(), out = (folder / "out.json").string();
+    ASSERT_EQ(run({"panel", file, "--simulated", "--seed", "3"}).exit_code, 0);
+    ASSERT_EQ(run({"export", file, "--out", out}).exit_code, 0);
+    json job = json::parse(std::ifstream(out))["project"]["panel_jobs"][0];
+    job["gap_tolerance_mm"] = 0.25;
+    // In the place of the one of its name, as it is or in an export that holds it.
+    EXPECT_EQ(answer({"panel", file, "--take", write("job.json", job.dump())}, 0)["status"], "taken");
+    EXPECT_EQ(
+        answer({"panel", file, "--set", "flush_tolerance_mm", "0.3"}, 0)["settings"]["gap_tolerance_mm"],
+        0.25);
+    EXPECT_EQ(answer({"panel", file, "--take", out}, 0)["job"], "panel");
+    EXPECT_EQ(answer({"panel", file}, 0)["panel"]["gate_passed"], true);
+    // Beside it, in a frame of its own; a frame that is another's is told before anything moves.
+    job["id"] = "second";
+    job["frame_name"] = "second";
+    EXPECT_EQ(answer({"panel", file, "--take", write("second.json", job.dump())}, 0)["job"], "second");
+    expect_refused({"panel", file}, "several panel jobs");
+
+    job["robot_id"] = "R9";
+    expect_refused({"panel", file, "--take", write("bad.json", job.dump())}, "R9");
+    expect_refused({"panel", file, "--take", write("measures.json", R"({"spots":[]})")}, "measures");
+    expect_refused({"panel", write("alone.json", job.dump())}, "--take");
+    expect_refused({"panel", file, "--take", (folder / "none.json").string()}, "none.json");
 }
 
 TEST_F(ServoCommand, RefusesInOneSentence) {

@@ -6,14 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "widgets/charts/legend_row.h"
 #include "widgets/plot_canvas.h"
 #include "widgets/style.h"
 
 namespace seamwright {
-
-namespace {
-constexpr double kLegendShare = 0.001;  // of the height: as little as it needs
-}
 
 GapPlot::GapPlot(QWidget* parent) : QWidget(parent), canvas_(new PlotCanvas(this)) {
     auto* box = new QVBoxLayout(this);
@@ -23,14 +20,7 @@ GapPlot::GapPlot(QWidget* parent) : QWidget(parent), canvas_(new PlotCanvas(this
     setToolTip(tr("Width with 3 sigma below it; dashed: what the nozzle needs"));
     canvas_->xAxis->setLabel(tr("path, mm"));
     canvas_->yAxis->setLabel(tr("width, mm"));
-    // In a row of its own: nothing stands over the data.
-    QCPLegend* legend = canvas_->legend;
-    legend->setBorderPen(Qt::NoPen);
-    legend->setBrush(Qt::NoBrush);
-    legend->setFillOrder(QCPLegend::foColumnsFirst);
-    canvas_->plotLayout()->insertRow(0);
-    canvas_->plotLayout()->addElement(0, 0, legend);
-    canvas_->plotLayout()->setRowStretchFactor(0, kLegendShare);
+    put_legend_above(*canvas_);
     draw();
 }
 
@@ -74,9 +64,7 @@ void GapPlot::draw() {
     need->point1->setCoords(0, need_mm_);
     need->point2->setCoords(1, need_mm_);
     need->setPen(QPen(style::alarm(palette()), 1.5, Qt::DashLine));
-    canvas_->legend->setVisible(true);
-    canvas_->legend->setFont(font());
-    canvas_->legend->setTextColor(style::quiet_text(palette()));
+    show_legend(*canvas_, *this);
     canvas_->xAxis->setRange(points_.front().path_mm,
                              std::max(points_.back().path_mm, points_.front().path_mm + 1));
     canvas_->yAxis->setRange(lowest, 1.1 * most + 0.1);

@@ -132,11 +132,14 @@ Desk::Desk(QObject* parent) : QObject(parent), worker_(live_) {
         }
         emit station_changed();
     });
-    connect(&worker_, &StationWorker::measured, this, [this](const auto&) {
+    const auto run_ended = [this](const auto&) {
         derive();
         emit runs_changed();
         emit events_changed();
-    });
+    };
+    connect(&worker_, &StationWorker::measured, this, run_ended);
+    connect(&worker_, &StationWorker::panel_measured, this, run_ended);
+    connect(&worker_, &StationWorker::panel_learnt, this, run_ended);
     connect(&worker_, &StationWorker::proven, this, [this] {
         derive();
         emit events_changed();

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <set>
 
-#include "core/geometry/notation.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/tables/csv_table.h"
 #include "projects/measure/measure.h"
@@ -22,25 +21,7 @@
 namespace seamwright {
 namespace {
 
-constexpr std::size_t kCharted = 100;  // newest runs in the chart
-
-std::array<double, 6> six(const Pose& pose) {
-    const KukaAbc abc = kuka_from_rotation(pose.linear());
-    return {pose.translation().x(),
-            pose.translation().y(),
-            pose.translation().z(),
-            abc.a_deg,
-            abc.b_deg,
-            abc.c_deg};
-}
-
-QString frame_text(const std::optional<Pose>& pose) {
-    if (!pose) return QStringLiteral("-");
-    const auto v = six(*pose);
-    QStringList parts;
-    for (std::size_t i = 0; i < 6; ++i) parts << number(v[i], i < 3 ? 2 : 3);
-    return parts.join("  ");
-}
+constexpr auto kCharted = std::size_t{100};  // newest runs in the chart
 
 QString status_text(RunStatus status) {
     switch (status) {

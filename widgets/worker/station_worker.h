@@ -33,6 +33,9 @@
 
 namespace seamwright {
 
+struct LearntPanel;
+struct MeasuredPanel;
+
 struct RobotState {
     std::string id;
     RobotIdentity identity;
@@ -53,6 +56,12 @@ struct StationState {
 struct LightOfSpot {
     Spot spot;  // as it was
     FoundLight light;
+};
+
+// A panel in its gripper: measured, and with `push` moved, in one step or by servoing.
+struct PanelOrder {
+    std::string job_id, part_id;
+    bool push = false, servo = false;
 };
 
 class StationWorker : public QObject {
@@ -91,6 +100,12 @@ class StationWorker : public QObject {
     // Stop by stop along the spots, or from a capture; gap_passed() brings it.
     void drive_gap(const DrivenGapPass& options);
     void read_gap(const std::filesystem::path& capture, const RecordedGapPass& options);
+    // With `push` confirm_panel() asks before the first move, answer_push() answers. panel_moved() tells where it was measured
+    // in several moves, panel_measured() ends it; cancelled, the record says so.
+    void fit_panel(const PanelOrder& order);
+    // Twelve moves, nobody is asked; panel_moved(), then panel_learnt(). What is learnt or taught the document keeps.
+    void learn_panel(const std::string& job_id);
+    void teach_panel(const std::string& job_id, int repeats);  // panel_taught()
     void record_pass(const Spot& spot, double step_mm, const AlignmentOptions& options);
     // Robot standing still: its pose, the stripe, and with `board` a second image with the laser off, exposed
     // for the surroundings; one sensor after another. An empty robot_id asks no robot.
@@ -127,6 +142,11 @@ class StationWorker : public QObject {
     void confirmed(std::shared_ptr<const seamwright::Confirmation> confirmation);
     void passed(std::shared_ptr<const seamwright::JudgedPass> pass);
     void gap_passed(std::shared_ptr<const seamwright::GapPass> pass);
+    void confirm_panel(std::shared_ptr<const seamwright::RunRecord> judged);
+    void panel_moved(std::shared_ptr<const seamwright::PanelRecord> so_far, int moves);
+    void panel_measured(std::shared_ptr<const seamwright::MeasuredPanel> panel);
+    void panel_learnt(std::shared_ptr<const seamwright::LearntPanel> learnt);
+    void panel_taught(std::shared_ptr<const seamwright::PanelJob> taught);
     // What failed is in them: who asked for it says it.
     void shots_taken(std::shared_ptr<const seamwright::CalibrationShots> shots);
 

@@ -11,6 +11,8 @@
 
 #include "devices/simulated/gripper_cell.h"
 #include "projects/panel/panel_measure.h"
+#include "projects/panel/panel_profiles.h"
+#include "projects/panel/panel_sensitivity.h"
 #include "projects/proof/replay.h"
 #include "projects/reuse/exchange.h"
 #include "projects/reuse/simulated_truth.h"
@@ -144,6 +146,65 @@ TEST(PanelServo, LearnsWhatTheGeometrySaysServesAndIsReplayed) {
     const auto replayed = replay(bench.folder / "panel.seam", {});
     ASSERT_TRUE(replayed) << replayed.error().sentence();
     for (const auto& d : replayed->differences) ADD_FAILURE() << d.what.english() << d.text.english();
+}
+
+// What is computed follows from where the places stand, which the simulation knows; what is learnt agrees, until somebody
+// turns a sensor.
+TEST(PanelServo, TheComputedSensitivityIsTheGeometrysAndFindsASensorThatWasTurned) {
+    ServoBench bench;
+    const auto rows = computed_sensitivity(bench.project, bench.project.panel_jobs[0]);
+    ASSERT_TRUE(rows) << rows.error().sentence();
+    const auto places = default_gripper_places();
+    ASSERT_EQ(rows->size(), 2 * places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const Eigen::Matrix3d axes = places[i].gripper_from_place.linear();
+        const Eigen::Vector3d p = places[i].gripper_from_place.translation();
+        for (int k = 0; k < 6; ++k) {
+            const Eigen::Vector3d motion = k < 3 ? Eigen::Vector3d(Eigen::Vector3d::Unit(k))
+                                                 : Eigen::Vector3d(Eigen::Vector3d::Unit(k - 3).cross(p));
+            // The surface lies level within half a degree as measured; its edge within a few mm of the place.
+            const double tolerance = k < 3 ? 0.01 : 6;
+            EXPECT_NEAR((*rows)[2 * i][static_cast<std::size_t>(k)], -axes.col(0).dot(motion), tolerance);
+            EXPECT_NEAR((*rows)[2 * i + 1][static_cast<std::size_t>(k)], axes.col(2).dot(motion), tolerance);
+        }
+    }
+    EXPECT_FALSE(compare_sensitivity(bench.project, bench.project.panel_jobs[0])) << "nothing is learnt";
+    const auto learnt = learn_panel(bench.station, "panel", device_servoing(), {});
+    ASSERT_TRUE(learnt && learnt->usable);
+    const auto beside = compare_sensitivity(bench.project, learnt->job);
+    ASSERT_TRUE(beside) << beside.error().sentence();
+    EXPECT_LT(beside->off_share, 0.1);
+
+    Project turned = bench.project;
+    for (Calibration& c : turned.calibrations)
+        if (c.sensor_id == "H2") c.flange_from_sensor.linear() *= rotation_exp({0, 0, 1.5});
+    const auto off = compare_sensitivity(turned, learnt->job);
+    ASSERT_TRUE(off) << off.error().sentence();
+    EXPECT_GT(off->off_share, kSensitivityShare);
+    EXPECT_EQ(off->place, "P2");
+}
+
+TEST(PanelServo, TheHeadsProfilesLieOnOneAnotherInThePlacesFrame) {
+    ServoBench bench;
+    auto run = run_panel(bench.station, "panel", {});
+    ASSERT_TRUE(run) << run.error().sentence();
+    const auto stored = bench.station.file().load_run(run->number);
+    ASSERT_TRUE(stored);
+    const auto shown = with_profiles(bench.project, *stored);
+    ASSERT_TRUE(shown) << shown.error().sentence();
+    EXPECT_TRUE(shown->after.empty());
+    ASSERT_EQ(shown->before.size(), default_gripper_places().size());
+    for (const PlaceProfiles& p : shown->before) {
+        EXPECT_EQ(p.heads.size(), p.place_id == "P1" || p.place_id == "P5" ? 2u : 1u) << p.place_id;
+        EXPECT_GT(p.merged.size(), 100u) << p.place_id;
+        // As taught, both sheets lie in the place's plane: whatever is more than a fold off the gap.
+        for (const Profile& head : p.heads)
+            for (std::size_t i = 0; i < head.size(); ++i)
+                if (std::abs(head.x_mm[i]) > 8 && head.segment[i] != kOutlier) {
+                    EXPECT_NEAR(head.z_mm[i], 0, 0.3) << p.place_id << " x " << head.x_mm[i];
+                }
+        EXPECT_NEAR(p.middle_mm.x(), 0, 0.3);
+    }
 }
 
 TEST(PanelServo, AMoveThatTheGateRefusesTakesTheFirstFrameBack) {

@@ -6,6 +6,7 @@
 #include <QSvgRenderer>
 #include <cmath>
 
+#include "core/geometry/notation.h"
 #include "widgets/flow_layout.h"
 #include "widgets/style.h"
 
@@ -155,6 +156,24 @@ void set_rows(QTableWidget& table, const QVector<QStringList>& rows) {
 QString number(double value, int decimals) {
     if (!std::isfinite(value)) return QStringLiteral("-");
     return QString::number(value, 'f', decimals);
+}
+
+std::array<double, 6> six(const Pose& pose) {
+    const KukaAbc abc = kuka_from_rotation(pose.linear());
+    return {pose.translation().x(),
+            pose.translation().y(),
+            pose.translation().z(),
+            abc.a_deg,
+            abc.b_deg,
+            abc.c_deg};
+}
+
+QString frame_text(const std::optional<Pose>& pose) {
+    if (!pose) return QStringLiteral("-");
+    const auto v = six(*pose);
+    QStringList parts;
+    for (std::size_t i = 0; i < 6; ++i) parts << number(v[i], i < 3 ? 2 : 3);
+    return parts.join("  ");
 }
 
 }  // namespace seamwright

@@ -7,9 +7,12 @@
 #include <QPushButton>
 #include <QTableWidget>
 #include <QVBoxLayout>
+#include <array>
 #include <functional>
+#include <optional>
 
 #include "core/calibration/verdict.h"
+#include "core/geometry/pose.h"
 
 namespace seamwright {
 
@@ -37,5 +40,9 @@ void set_rows(QTableWidget& table, const QVector<QStringList>& rows);
 
 // "12.34", with as many decimals as given; "-" for what is no number.
 QString number(double value, int decimals);
+
+// X, Y, Z in mm and KUKA's A, B, C in degrees; "-" for none.
+std::array<double, 6> six(const Pose& pose);
+QString frame_text(const std::optional<Pose>& pose);
 
 }  // namespace seamwright

@@ -2,7 +2,6 @@
 // or run on a project's devices.
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -16,12 +15,12 @@
 #include "app/cli/sign_in.h"
 #include "app/cli/signal_watch.h"
 #include "core/panel/panel_fit.h"
-#include "devices/exchange/files.h"
-#include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/scene/random.h"
 #include "projects/measure/fields.h"
 #include "projects/measure/measure.h"
+#include "projects/panel/panel_job_file.h"
+#include "projects/panel/panel_sensitivity.h"
 #include "projects/panel/panel_servo.h"
 #include "projects/panel/panel_station.h"
 #include "projects/reuse/simulated_truth.h"
@@ -32,91 +31,11 @@ namespace {
 
 using nlohmann::json;
 
-struct FitJob {
-    std::vector<PanelSpot> spots;
-    PanelOptions options;
-};
-
-Expected<PanelSide> read_side(const json& spot, const std::string& key, const std::string& path) {
-    SEAM_TRY(auto side, json_field(spot, key, path));
-    const std::string where = json_path(path, key);
-    SEAM_OK(only_fields(*side, {"reference", "measured"}, where));
-    SEAM_TRY(auto reference, json_vector3(*side, "reference", where));
-    SEAM_TRY(auto measured, json_vector3(*side, "measured", where));
-    return PanelSide{reference, measured};
-}
-
-Expected<PanelSpot> read_fit_spot(const json& spot, const std::string& path) {
-    if (auto known = only_fields(
-            spot, {"id", "gripper_from_sensor", "panel", "body", "weights", "sigma_mm", "surface_deg"}, path);
-        !known)
-        return tl::unexpected(known.error());
-    PanelSpot s;
-    SEAM_TRY(auto id, json_string(spot, "id", path));
-    s.id = id;
-    SEAM_TRY(auto pose, json_field(spot, "gripper_from_sensor", path));
-    SEAM_TRY(auto parsed, parse_pose(*pose, json_path(path, "gripper_from_sensor")));
-    s.gripper_from_sensor = parsed;
-    SEAM_TRY(auto panel, read_side(spot, "panel", path));
-    s.panel = panel;
-    SEAM_TRY(auto body, read_side(spot, "body", path));
-    s.body = body;
-    if (spot.contains("weights")) {
-        SEAM_TRY(auto weights, json_vector3(spot, "weights", path));
-        s.weights = weights;
-    }
-    SEAM_TRY(auto sigma, json_number_or(spot, "sigma_mm", s.sigma_mm, path));
-    s.sigma_mm = sigma;
-    SEAM_TRY(auto surface, json_number_or(spot, "surface_deg", 0, path));
-    s.surface_rad = rad_from_deg(surface);
-    return s;
-}
-
-const Field<PanelJob>& deviation_field() {
-    const auto& fields = panel_fields();
-    return *std::find_if(fields.begin(), fields.end(),
-                         [](const Field<PanelJob>& f) { return f.info.name == "deviation"; });
-}
-
-Expected<PanelDeviation> deviation_from(const std::string& word) {
-    const auto& choices = deviation_field().info.choices;
-    const auto at = std::find(choices.begin(), choices.end(), word);
-    if (at == choices.end())
-        return usage_error(Text("\"{}\" is not one of {}", word, fmt::join(choices, ", ")), "deviation");
-    return static_cast<PanelDeviation>(at - choices.begin());
-}
-
-Expected<FitJob> read_fit_job(const std::string& file) {
-    SEAM_TRY(auto text, read_text_file(file));
-    SEAM_TRY(auto document, parse_json(text, file));
-    SEAM_OK(only_fields(document, {"spots", "limits", "deviation"}, ""));
-    SEAM_TRY(auto spots, json_array(document, "spots", ""));
-    FitJob job;
-    for (std::size_t i = 0; i < spots->size(); ++i) {
-        SEAM_TRY(auto spot, read_fit_spot((*spots)[i], json_path("spots", i)));
-        job.spots.push_back(std::move(spot));
-    }
-    if (document.contains("limits") && !document["limits"].is_null()) {
-        const json& limits = document["limits"];
-        SEAM_OK(only_fields(limits, {"translation_mm", "rotation_deg"}, "limits"));
-        CorrectionLimits& to = job.options.limits;
-        SEAM_TRY(auto translation, json_number_or(limits, "translation_mm", to.translation_mm, "limits"));
-        SEAM_TRY(auto rotation, json_number_or(limits, "rotation_deg", to.rotation_deg, "limits"));
-        to = {translation, rotation};
-    }
-    if (document.contains("deviation")) {
-        SEAM_TRY(auto word, json_string(document, "deviation", ""));
-        SEAM_TRY(auto deviation, deviation_from(word));
-        job.options.deviation = deviation;
-    }
-    return job;
-}
-
 // `deviation`, where given, stands above the file's.
 Expected<Answer> panel(const std::string& file, const std::string& deviation) {
-    SEAM_TRY(auto job, read_fit_job(file));
+    SEAM_TRY(auto job, read_panel_measures(file));
     if (!deviation.empty()) {
-        SEAM_TRY(auto asked, deviation_from(deviation));
+        SEAM_TRY(auto asked, panel_deviation_from(deviation));
         job.options.deviation = asked;
     }
     SEAM_TRY(auto fit, fit_panel(job.spots, job.options));
@@ -130,7 +49,7 @@ Expected<Answer> panel(const std::string& file, const std::string& deviation) {
 // --- on a project's devices
 
 struct PanelArguments {
-    std::string file, job, part, deviation;
+    std::string file, job, part, deviation, take;
     bool push = false, dry_run = false, keep_images = false, simulated = false, servo = false, learn = false;
     ServoingOptions servoing = device_servoing();
     int hold_s = static_cast<int>(kHold.count() / 1000);
@@ -167,7 +86,8 @@ Expected<std::string> job_of(const Project& project, const PanelArguments& a) {
     std::string names;
     for (const PanelJob& job : project.panel_jobs) names += (names.empty() ? "" : ", ") + job.id;
     if (names.empty())
-        return input_error("the project has no panel job", a.file, "make one, or see --simulated");
+        return input_error("the project has no panel job", a.file,
+                           "take one from a file with --take, or see --simulated");
     return usage_error("the project has several panel jobs", a.file, Text("name one with --job: {}", names));
 }
 
@@ -221,6 +141,17 @@ Expected<Answer> set(Station& station, const std::string& id, const PanelArgumen
     return answer;
 }
 
+// A job from a file becomes the project's.
+Expected<Answer> take(Station& station, const std::string& file) {
+    SEAM_TRY(auto job, read_panel_job(file));
+    Answer answer;
+    answer.json = {{"status", "taken"}, {"job", job.id}, {"places", job.places.size()}};
+    answer.text = fmt::format("panel job {} of {} places taken\n", job.id, job.places.size());
+    SEAM_TRY(const auto project, with_panel_job(station.project(), std::move(job)));
+    SEAM_OK(station.edit(project));
+    return answer;
+}
+
 // Panel or body somewhere off: 3 mm across, as much within the opening as the gap leaves to both.
 nlohmann::json somewhere(Random& random) {
     const double x = random.uniform(-0.5, 0.5), y = random.uniform(-0.5, 0.5), z = random.uniform(-3, 3);
@@ -271,11 +202,18 @@ Expected<Answer> learn(Station& station, const std::string& id, const PanelArgum
         if (job.id == id) job = learnt.job;
     SEAM_OK(station.edit(project));
     const PanelSensitivity& s = *learnt.job.sensitivity;
+    SEAM_TRY(const auto beside, compare_sensitivity(project, learnt.job));
     answer.json["places"] = s.places;
     answer.json["sensitivity"] = s.rows;
+    answer.json["beside_computed"] = {{"off_share", beside.off_share},
+                                      {"largest_mm", beside.largest_mm},
+                                      {"place", beside.place},
+                                      {"value", beside.flush ? "flush" : "gap"}};
     answer.text = fmt::format(
-        "sensitivity of {} values learnt by moves of {:g} mm and {:g} deg, condition {:.1f}; kept\n",
-        s.rows.size(), s.step_mm, s.step_deg, s.condition);
+        "sensitivity of {} values learnt by moves of {:g} mm and {:g} deg, condition {:.1f}; kept\n"
+        "{:.1f} % off the computed one; most at place {}, {}: {:.3f} mm of a move\n",
+        s.rows.size(), s.step_mm, s.step_deg, s.condition, 100 * beside.off_share, beside.place,
+        beside.flush ? "flush" : "gap", beside.largest_mm);
     return answer;
 }
 
@@ -302,6 +240,7 @@ Expected<Answer> panel_on_devices(const PanelArguments& a) {
                                      : a.push ? std::optional(Deed::push)
                                               : std::nullopt;
     SEAM_TRY(auto station, open_station(a.file, deed));
+    if (!a.take.empty()) return take(station, a.take);
     SEAM_TRY(auto id, job_of(station.project(), a));
     if (!a.settings.empty()) return set(station, id, a);
     if (const PanelJob* job = find_panel_job(station.project(), id); job && a.teach == 0)
@@ -364,6 +303,7 @@ void add_panel(CommandLine& line) {
         "CAR-0815 --push\n"
         "  seamwright panel fender.seam --set gap_tolerance_mm 0.3 --set flush_tolerance_mm 0.2\n"
         "  seamwright panel fender.seam --set deviation leave_out\n"
+        "  seamwright panel fender.seam --take job_of_export.json\n"
         "  job.json: "
         "{\"spots\":[{\"id\":\"S1\",\"gripper_from_sensor\":{\"xyz\":[500,0,900],\"abc\":[0,0,0]},\n"
         "             \"panel\":{\"reference\":[0,0,0],\"measured\":[0.3,0,0.1]},\n"
@@ -421,6 +361,16 @@ void add_panel(CommandLine& line) {
                                          "Instead of a run: a limit or tolerance of the job, e.g. "
                                          "gap_tolerance_mm 0.3");
     settings->type_name("NAME VALUE")->excludes(push)->excludes(command->get_option("--teach"));
+    command
+        ->add_option(
+            "--take", a->take,
+            "Instead of a run: this panel job becomes the project's, as an entry of \"panel_jobs\" in an "
+            "export, or an export that holds one")
+        ->type_name("JOB.json")
+        ->excludes(push)
+        ->excludes(command->get_option("--teach"))
+        ->excludes(settings)
+        ->excludes(servo);
     command->add_option(
         "--deviation", a->deviation,
         "With JOB.json: of a spot that contradicts the others, \"share\" out its deviation (best "
@@ -440,6 +390,7 @@ void add_panel(CommandLine& line) {
             return panel_on_devices(*a);
         }
         if (!a->settings.empty()) return usage_error("--set is for a project's panel job", a->file);
+        if (!a->take.empty()) return usage_error("--take is for a project", a->file);
         return panel(a->file, a->deviation);
     });
 }

@@ -157,14 +157,16 @@ QLayout* PanelDialog::make_results() {
     heads_->setObjectName("panel_heads");
     row->addWidget(heads_, 3);
     row->addWidget(make_question(), 6);
-    auto* right = new QVBoxLayout;
+    auto* several = new QWidget;
+    auto* right = new QVBoxLayout(several);
+    right->setContentsMargins(0, 0, 0, 0);
     moves_ = new MovesPlot;
     moves_->setObjectName("panel_moves");
     right->addWidget(moves_, 1);
     beside_ = make_text({});
     beside_->setObjectName("panel_beside");
     right->addWidget(beside_);
-    row->addLayout(right, 3);
+    row->addWidget(several, 3);
     return row;
 }
 
@@ -290,8 +292,7 @@ void PanelDialog::show_deeds() {
     progress_->setVisible(waiting_ != Deed::none && !asked);
     // The question takes the plots' place: what it is about stays in view.
     heads_->setVisible(!asked);
-    moves_->setVisible(!asked);
-    beside_->setVisible(!asked && !beside_->text().isEmpty());
+    moves_->parentWidget()->setVisible(!asked);
     const QPushButton* next = free ? next_deed() : nullptr;
     for (QPushButton* b : {file_, teach_, measure_, fit_}) {
         if (b == next) b->setDefault(true);

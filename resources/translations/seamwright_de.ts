@@ -7585,7 +7585,7 @@ und %1 weitere</translation>
     </message>
     <message>
         <source>heads %1 mm</source>
-        <translation>Köpfe %1 mm</translation>
+        <translation>Köpfe %1</translation>
     </message>
     <message>
         <source>switched off</source>

@@ -29,8 +29,9 @@ class Part:
 
 
 class Line:
-    def __init__(self, cell, runner, broker, truth, project):
-        self.cell, self.runner, self.broker, self.truth, self.project = cell, runner, broker, truth, project
+    def __init__(self, cell, runner, broker, listener, truth, project):
+        self.cell, self.runner, self.broker, self.listener = cell, runner, broker, listener
+        self.truth, self.project = truth, project
         self.parts, self.faults, self.alarms = [], [], 0
         self.frames = None       # on the controller after the last part
         self.shift_mm = 0.0      # of the robot, along the axis of the drift
@@ -84,11 +85,12 @@ class Line:
         since, changes, starts = len(self.runner.events), len(self.runner.changes), self.cell.starts
         # A station that has just started, or whose broker has, may not be there to hear it.
         heard = time.time() - max([self.broker.started, *self.runner.changes]) > 10
-        said = self.broker.say(TOPIC.format("NCMD"), {
-            "id": f"{part.name}.{part.calls}", "part_type": TYPES[part.kind], "paint": part.paint, "part_number": part.number,
-            "part_name": part.name})
-        part.announced &= heard and said
-        time.sleep(0.3)
+        command = {"id": f"{part.name}.{part.calls}", "part_type": TYPES[part.kind], "paint": part.paint,
+                   "part_number": part.number, "part_name": part.name}
+        said = self.broker.say(TOPIC.format("NCMD"), command)
+        # The robot's call must not overtake it: the broker has it when it says so, others when they hear it.
+        part.announced &= heard and said and self.listener.heard(TOPIC.format("NCMD"), command["id"], 5)
+        time.sleep(0.5)
         if self.cell.say("start " + part.name) is None:
             time.sleep(1)
             return False

@@ -156,6 +156,16 @@ class Listener:
             time.sleep(0.5)
 
 
+    def heard(self, topic, number, seconds):
+        """Whether the command of that id comes by within so long."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            if any(t == topic and m and m.get("id") == number for t, m in self.messages[-50:]):
+                return True
+            time.sleep(0.05)
+        return False
+
+
 class Database:
     """A PostgreSQL server; as root it runs as the user postgres, since it refuses to run as root."""
 

@@ -159,7 +159,7 @@ class Soak:
         self.cell = plant.Cell(a.cell_program or a.program, folder, cell, known, a.time_scale)
         self.cell.start()
         self.runner = plant.Runner(a.program, folder, self.project, ["--fleet"])
-        self.line = Line(self.cell, self.runner, self.broker, self.truth, self.project)
+        self.line = Line(self.cell, self.runner, self.broker, self.listener, self.truth, self.project)
         self.runner.start()
         if not self.runner.wait(lambda e: e["event"] == "connected", 180):
             raise RuntimeError("the runner does not connect: run.log")

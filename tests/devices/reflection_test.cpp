@@ -57,7 +57,7 @@ TEST(Reflection, ThatCarriesATemplateAlongIsRefusedAndNoOtherFrame) {
         const auto finder = make_feature_finder(recipe).value();
         const Eigen::Vector2d reference = finder->find(taught).point_mm;
         auto stripe = TaughtStripe::make(taught, reference, search_window(recipe)).value();
-        for (std::uint64_t frame = one.frame - 30; frame < one.frame + 30; ++frame) {
+        for (std::uint64_t frame = one.frame - 10; frame < one.frame + 10; ++frame) {
             const Seen now = seen(*cell, spot, frame, &stripe);
             const Feature found = finder->find(now.profile), told = finder->find(now.told);
             ASSERT_EQ(told.status, FeatureStatus::ok) << told.message << ", frame " << frame;

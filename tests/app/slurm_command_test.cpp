@@ -117,8 +117,9 @@ TEST_F(SlurmCommand, AReplayAndAnAcceptanceAreTheSameToTheBit) {
     ASSERT_EQ(here.at("files").size(), 1u);
     EXPECT_FALSE(here["files"][0].at("differences").empty()) << "the changed value is told";
     EXPECT_EQ(answer(by_slurm({"replay", file}, 7), 1), here);
-    const std::vector<std::string> judged{"acceptance", file,    "--region",       "inner",
-                                          "--study",    "type1", "--tolerance-mm", "1"};
+    const std::vector<std::string> judged{"acceptance",     file, "--region", "inner",
+                                          "--reference",    "0",  "--study",  "type1",
+                                          "--tolerance-mm", "1"};
     last = run_program(judged, folder);
     const int code = last.exit_code;
     ASSERT_LE(code, 1) << last.err;

@@ -71,7 +71,7 @@ TEST_F(ServoCommand, TakesAJobFromAnExportIntoAProject) {
     expect_refused({"panel", file, "--take", write("bad.json", job.dump())}, "R9");
     expect_refused({"panel", file, "--take", write("measures.json", R"({"spots":[]})")}, "measures");
     expect_refused({"panel", write("alone.json", job.dump())}, "--take");
-    expect_refused({"panel", file, "--take", (folder / "none.json").string()}, "none.json");
+    expect_refused({"panel", file, "--take", (folder / "none.json").string()}, "none.json", 3);
 }
 
 TEST_F(ServoCommand, RefusesInOneSentence) {

@@ -13,8 +13,8 @@ constexpr double kLeastShare = 0.25;   // of the taught contour, that a place re
 constexpr double kShareLost = 0.02;    // of the contour, that what is told may show less
 constexpr double kLeastMargin = 0.06;  // of what it explains, by which the right place explains more,
 constexpr double kMostlyAtOdds = 0.5;  // where two take different candidates on so many of the lines
-constexpr double kBetter =
-    12;  // lines and pieces of the contour, by which another place than the tracked profile's is
+// Lines and points of the contour, by which another place than the tracked profile's own has to be better.
+constexpr double kBetter = 12;
 constexpr int kAround = 8;            // lines on either side, of which ..
 constexpr double kShareAround = 0.5;  // .. so many show the contour, where a line shows a reflection alone
 

@@ -34,9 +34,9 @@ class TaughtStripe {
   private:
     struct Place {  // where the taught contour may lie
         PlanarMotion scene_from_taught;
-        bool ambiguous = false;        // the contour fits elsewhere as well
-        int lines = 0;                 // with a candidate on it
-        double seen = 0;               // share of the contour inside the field that has a candidate
+        bool ambiguous = false;  // the contour fits elsewhere as well
+        int lines = 0;           // with a candidate on it
+        double seen = 0;         // what speaks for it, in lines and points of the contour inside the field
         std::vector<char> on_contour;  // per slot of a candidate
     };
     TaughtStripe(ContourMatcher matcher, const SearchWindow& window)
@@ -56,8 +56,8 @@ class TaughtStripe {
     std::array<Place, 3> places_;
     double noise_mm_ = 0;    // of a point to the contour, where it lies on it
     std::size_t found_ = 0;  // of places_
-    std::vector<float> of_edge_, of_line_,
-        spread_;  // how well an edge of the model, a line of the scene is met: 0..1
+    // How well an edge of the model, a line of the scene is met: 0..1.
+    std::vector<float> of_edge_, of_line_, spread_;
     std::vector<double> along_;
     std::vector<char> shows_;         // per line: the contour
     std::vector<signed char> known_;  // per slot

@@ -66,8 +66,9 @@ const RobotSetup* find_robot(const Project& project, const std::string& id);
 const Spot* find_spot(const Project& project, const std::string& id);
 
 // A spot made ready. Where an image shows a second contour beside the stripe, the spot's reference profile tells which is
-// the stripe (TaughtStripe); where it cannot, the spot is not measured. Keeps copies of what it needs from the project. One thread at a time; no allocation
-// after the first profile of a size (a longer profile than ever before grows the buffers once).
+// the stripe (TaughtStripe); where it cannot, the spot is not measured. Keeps copies of what it needs from the project. One
+// thread at a time; no allocation after the first profile of a size (a longer profile than ever before grows the buffers
+// once).
 class SpotMeasurer {
   public:
     // Refuses an unknown spot or sensor and a recipe its kind refuses. A missing calibration is no error

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
 
 #include "core/features/registration/taught_stripe.h"
 #include "joints.h"
@@ -66,15 +65,6 @@ Frame frame_with(Ghost ghost, double lost, const std::vector<Sheet>& sheets, con
         if (dice.chance(0.03)) put(dice.uniform(-30, 30), dice.uniform(30, 120));
     }
     return f;
-}
-
-int trials_of(int wanted) {
-    const char* n = std::getenv("SEAMWRIGHT_TRIALS");
-    return n ? std::atoi(n) : wanted;
-}
-std::uint64_t seed_of(std::uint64_t usual) {
-    const char* n = std::getenv("SEAMWRIGHT_SEED");
-    return n ? std::strtoull(n, nullptr, 10) + usual : usual;
 }
 
 struct Tally {
@@ -143,9 +133,8 @@ TEST(Ghosts, TheTaughtContourTellsThemFromTheStripe) {
             taught_too.add(told, off(told));
             const bool was_right = by_frame.status == RegistrationStatus::ok && off(by_frame) < 0.5;
             lost_to_it += was_right && told.status != RegistrationStatus::ok;
-            if (std::getenv("SEAMWRIGHT_SCENES") &&
-                ((told.status == RegistrationStatus::ok && off(told) >= 0.5) ||
-                 (row.ghost != Ghost::whole && told.status != RegistrationStatus::ok)))
+            if (told_of_each() && ((told.status == RegistrationStatus::ok && off(told) >= 0.5) ||
+                                   (row.ghost != Ghost::whole && told.status != RegistrationStatus::ok)))
                 std::printf("  %d %s: choice %d, %s, %.2f off; alone %s, %.2f off\n", i, joint.name,
                             int(*choice), std::string(to_string(told.status)).c_str(), off(told),
                             std::string(to_string(by_frame.status)).c_str(), off(by_frame));

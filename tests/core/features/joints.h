@@ -6,10 +6,25 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include <cstdlib>
+
 #include "contour_scenes.h"
 #include "core/features/registration/registration.h"
 
 namespace seamwright::scenes {
+
+// What the environment asks of the tests on joints: so many scenes of each kind, other ones, each that went wrong.
+inline int trials_of(int wanted) {
+    const char* n = std::getenv("SEAMWRIGHT_TRIALS");
+    return n ? std::atoi(n) : wanted;
+}
+inline std::uint64_t seed_of(std::uint64_t usual) {
+    const char* n = std::getenv("SEAMWRIGHT_SEED");
+    return n ? std::strtoull(n, nullptr, 10) + usual : usual;
+}
+inline bool told_of_each() {
+    return std::getenv("SEAMWRIGHT_SCENES") != nullptr;
+}
 
 // A joint about the origin, seen from above. Its sheets reach far beyond every field.
 struct Joint {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <map>
 
 #include "core/profile/filter.h"
@@ -12,18 +11,6 @@
 
 namespace seamwright::scenes {
 namespace {
-
-int trials_of(int wanted) {
-    const char* n = std::getenv("SEAMWRIGHT_TRIALS");
-    return n ? std::atoi(n) : wanted;
-}
-std::uint64_t seed_of(std::uint64_t usual) {
-    const char* n = std::getenv("SEAMWRIGHT_SEED");
-    return n ? std::strtoull(n, nullptr, 10) + usual : usual;
-}
-bool told_of_each() {
-    return std::getenv("SEAMWRIGHT_SCENES") != nullptr;
-}
 
 struct Marks {
     int right = 0, invented = 0, missed = 0, profiles = 0;

@@ -18,10 +18,16 @@ SensorModel camera_model() {
     return model;
 }
 
-// A stripe on the line from (-40, z) to (end, z + slope) in the sensor frame, and a fainter ghost 60 rows
-// below.
+// A copy of the stripe, so many rows below it, from a column on.
+struct Ghost {
+    double grey = 0, rows = 60;
+    int from = 0;
+};
+constexpr Ghost kFaint{110};
+
+// A stripe on the line from (-40, z) to (end, z + slope) in the sensor frame, and its ghost.
 void draw(Frame& frame, const SensorModel& model, double end_mm, double height_mm, double slope,
-          bool ghost = false) {
+          const Ghost& ghost = {}) {
     frame.pixels.assign(640 * 480, std::byte{8});
     for (int u = 0; u < 640; ++u) {
         double x = -40;  // the x whose image lies in this column, by bisection
@@ -34,7 +40,8 @@ void draw(Frame& frame, const SensorModel& model, double end_mm, double height_m
         const double v = model.to_pixel({x, height_mm + slope * x})->y();
         for (int row = 0; row < 480; ++row) {
             double grey = 200 * std::exp(-0.5 * std::pow((row - v) / 2.0, 2));
-            if (ghost) grey += 110 * std::exp(-0.5 * std::pow((row - v - 60) / 2.0, 2));
+            if (u >= ghost.from)
+                grey += ghost.grey * std::exp(-0.5 * std::pow((row - v - ghost.rows) / 2.0, 2));
             auto& pixel = frame.pixels[static_cast<std::size_t>(row * 640 + u)];
             pixel = static_cast<std::byte>(
                 std::min(255, static_cast<int>(pixel) + static_cast<int>(std::lround(grey))));
@@ -57,7 +64,7 @@ TEST(Measure, ImageToPointInMillimetres) {
     ASSERT_TRUE(measurer) << measurer.error().sentence();
     Frame frame;
     for (const bool ghost : {false, true}) {
-        draw(frame, camera_model(), 12.3, 5.0, 0.1, ghost);
+        draw(frame, camera_model(), 12.3, 5.0, 0.1, ghost ? kFaint : Ghost{});
         const SpotMeasurement& m = measurer->measure(frame);
         ASSERT_EQ(m.status, SpotStatus::measured) << m.message;
         EXPECT_NEAR(m.feature.point_mm.x(), 12.3, 0.25);  // the pitch is 0.2 mm
@@ -76,6 +83,42 @@ TEST(Measure, ImageToPointInMillimetres) {
         stored.candidates = {};
         EXPECT_EQ(exact_text(measurer->measure(stored)), text);
     }
+}
+
+// Brighter than the stripe and of its shape: the reference profile tells, where it can.
+TEST(Measure, AGhostIsToldByTheReferenceProfile) {
+    Project project = image_project();
+    Frame frame;
+    draw(frame, camera_model(), 12.3, 5.0, 0.1);
+    {
+        auto teaching = SpotMeasurer::make(project, "S1");
+        ASSERT_TRUE(teaching);
+        const SpotMeasurement& m = teaching->measure(frame);
+        ASSERT_EQ(m.status, SpotStatus::measured);
+        project.spots[0].reference_profile = teaching->profile();
+        project.spots[0].reference_mm = m.measured_mm;
+    }
+    Project untaught = project;
+    untaught.spots[0].reference_profile = {};
+    auto measurer = SpotMeasurer::make(project, "S1"), alone = SpotMeasurer::make(untaught, "S1");
+    ASSERT_TRUE(measurer && alone);
+
+    // Over the end of the contour only.
+    for (const double rows : {-50., 45., 70.}) {
+        draw(frame, camera_model(), 13.1, 5.4, 0.1, {255, rows, 260});
+        const SpotMeasurement& m = measurer->measure(frame);
+        ASSERT_EQ(m.status, SpotStatus::measured) << m.message << ", " << rows << " rows";
+        EXPECT_NEAR(m.feature.point_mm.x(), 13.1, 0.25);
+        EXPECT_NEAR(m.feature.point_mm.y(), 5.4 + 0.1 * m.feature.point_mm.x(), 0.05);
+        EXPECT_EQ(exact_text(measurer->measure(Capture(measurer->capture()))), exact_text(m));
+    }
+    // As long as the stripe: nothing tells, and that is said.
+    draw(frame, camera_model(), 12.3, 5.0, 0.1, {255, 60, 0});
+    EXPECT_EQ(alone->measure(frame).status, SpotStatus::measured) << "one of the two";
+    const SpotMeasurement& m = measurer->measure(frame);
+    EXPECT_EQ(m.status, SpotStatus::no_feature);
+    EXPECT_EQ(m.feature.status, FeatureStatus::ambiguous);
+    EXPECT_THAT(m.message.english(), testing::HasSubstr("two contours"));
 }
 
 TEST(Measure, FinishedProfileSkipsTheImage) {
@@ -206,7 +249,7 @@ TEST(Allocations, NoneAfterTheFirstProfile) {
         std::vector<Frame> frames(6);
         for (std::size_t i = 0; i < frames.size(); ++i) {
             if (std::string(id) == "S1") {
-                draw(frames[i], camera_model(), 12.7 - 0.2 * static_cast<double>(i % 3), 5.0, 0.1, true);
+                draw(frames[i], camera_model(), 12.7 - 0.2 * static_cast<double>(i % 3), 5.0, 0.1, kFaint);
             } else {
                 frames[i].profile = cell->cut(cell->project.spots[1]);
                 bend(frames[i].profile);

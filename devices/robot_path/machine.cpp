@@ -721,7 +721,7 @@ Expected<ProgramPath> Machine::run(std::vector<Source> sources, const std::strin
             const auto from = line.find_first_not_of(" \t\r");  // as notes show it
             line =
                 from == std::string::npos ? "" : line.substr(from, line.find_last_not_of(" \t\r") - from + 1);
-            if (line.size() > 120) line = line.substr(0, 117) + "...";
+            if (line.size() > 120) line.replace(117, std::string::npos, "...");
             std::replace_if(
                 line.begin(), line.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
         }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/geometry/notation.h"
 
@@ -120,7 +121,7 @@ WatchLine LineControl::watch_line() {
     line.given_up = [this] { return caller()->link->given_up(); };
     line.named = [this](const std::string& part_id) { return named(part_id); };
     line.notices = [this] {
-        std::vector<Text> all;
+        std::vector<Text> all = std::exchange(notices_, {});
         for (const Link& l : links_)
             for (Text& notice : l.link->take_notices())
                 all.push_back(Text("{}: {}", l.setup.id, std::move(notice)));
@@ -141,6 +142,15 @@ Expected<NamedPart> LineControl::named(const std::string& part_id) {
         if (speaker == nullptr || part == LinePart{}) {
             speaker = &l;
             part = announced;
+        }
+    }
+    // A plant whose robot and line have once called a part the same gives a part one name: another name is another part.
+    if (const std::string by_line = part.id(); !starter && !part_id.empty() && !by_line.empty()) {
+        same_names_ = same_names_ || by_line == part_id;
+        if (same_names_ && by_line != part_id) {
+            notices_.push_back(Text("part {}: the line speaks of part {}, nothing of that is taken for it",
+                                    part_id, by_line));
+            part = {};
         }
     }
     state_.part = part;

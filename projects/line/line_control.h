@@ -48,7 +48,9 @@ class LineControl {
     std::vector<Link> links_;
     Link* caller();  // the one that starts parts
     LineState state_;
-    LinePart called_;                      // by the line that starts parts
+    LinePart called_;          // by the line that starts parts
+    bool same_names_ = false;  // robot and line have called a part by one name
+    std::vector<Text> notices_;
     LineAlarm refused_ = LineAlarm::none;  // why the part that is missed next is
     LineAlarm lost_ = LineAlarm::none;
     std::chrono::steady_clock::time_point told_alive_{};

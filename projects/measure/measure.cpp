@@ -250,9 +250,7 @@ struct SpotMeasurer::Impl {
             if (!choice) return no(SpotStatus::no_stripe, choice.error().text());
             if (*choice == StripeChoice::undecided) {
                 measurement.feature.status = FeatureStatus::ambiguous;
-                return no(
-                    SpotStatus::no_feature,
-                    "two contours like the taught one are seen, and nothing tells which is the reflection");
+                return no(SpotStatus::no_feature, kTwoContours);
             }
         } else if (auto tracked = track_capture(from, filter, profile); !tracked) {
             return no(SpotStatus::no_stripe, tracked.error().text());

@@ -97,6 +97,55 @@ Expected<PlacingTask> task_of(const Project& project, const Region& region,
     return task;
 }
 
+}  // namespace
+
+// One spot, attitude and covariance a candidate.
+struct Looked {
+    Project project;  // without spots and regions
+    Region region;    // without spots
+    std::vector<Spot> spots;
+    std::vector<Attitude> attitudes;
+    std::vector<Eigen::Matrix2d> covariances;
+    std::optional<SpotPlacing> placing;
+    double three_sigma_mm = 0;  // wanted
+
+    ProposedSpot spot(std::size_t candidate, const std::string& id) const {
+        ProposedSpot p;
+        p.spot = spots[candidate];
+        p.spot.id = id;
+        p.arc_mm = attitudes[candidate].arc_mm;
+        p.turned_deg = attitudes[candidate].turned_deg;
+        const Eigen::Matrix2d& s = covariances[candidate];
+        const double mean = s.trace() / 2, off = std::hypot((s(0, 0) - s(1, 1)) / 2, s(0, 1));
+        p.sigma_mm = {std::sqrt(mean + off), std::sqrt(std::max(0.0, mean - off))};
+        p.point_mm = attitudes[candidate].workobject_from_sensor * p.spot.reference_mm;
+        const std::vector<int> all = places();
+        p.place = static_cast<std::size_t>(
+            std::lower_bound(all.begin(), all.end(), attitudes[candidate].place) - all.begin());
+        return p;
+    }
+    // As the safety gate will judge them, one standard deviation; 0: it cannot say.
+    double forecast_mm(const std::vector<ProposedSpot>& proposed) const {
+        Project with = project;
+        Region of = region;
+        for (const ProposedSpot& p : proposed) {
+            with.spots.push_back(p.spot);
+            of.spot_ids.push_back(p.spot.id);
+        }
+        const auto forecast = forecast_region(with, of);
+        return forecast ? forecast->sigma_mm : 0;
+    }
+    // The numbers of the places that see something, in the order of the chain.
+    std::vector<int> places() const {
+        std::vector<int> all;
+        for (const Attitude& a : attitudes)
+            if (all.empty() || all.back() != a.place) all.push_back(a.place);
+        return all;
+    }
+};
+
+namespace {
+
 class Proposer {
   public:
     Proposer(const Project& project, const Drawing& drawing, const ProposeOptions& options)
@@ -106,7 +155,9 @@ class Proposer {
         SEAM_OK(prepare());
         SEAM_OK(look());
         SEAM_TRY(auto task, placing_task());
-        SEAM_TRY(auto placing, SpotPlacing::make(std::move(task)));
+        SEAM_TRY(auto made, SpotPlacing::make(std::move(task)));
+        looked_->placing.emplace(std::move(made));
+        const SpotPlacing& placing = *looked_->placing;
         if (placing.places() < o_.fewest)
             return input_error(Text("a feature is seen at {} places along edge {} only, {} are needed",
                                     placing.places(), o_.edge, o_.fewest),
@@ -132,7 +183,9 @@ class Proposer {
         if (k > 1) out_.bound_of_fewer_mm = placing.bound_mm(k - 1);
         out_.along_mm = placing.along_bead(out_.set.chosen);
         out_.places = placing.places();
-        out_.candidates = static_cast<int>(project_.spots.size());
+        out_.candidates = static_cast<int>(looked_->spots.size());
+        looked_->three_sigma_mm = o_.three_sigma_mm;
+        out_.looked = looked_;
         return std::move(out_);
     }
 
@@ -182,9 +235,10 @@ class Proposer {
     Expected<void> look() {
         const MeshTree tree(drawing_.mesh);
         const OpticsSettings optics = optics_of(*calibration_, o_.optics);
-        project_ = given_;
-        project_.spots.clear();
-        project_.regions.clear();
+        looked_->project = given_;
+        looked_->project.spots.clear();
+        looked_->project.regions.clear();
+        looked_->region = region_;
         Spot usual;  // the project's habits
         for (const Spot& spot : given_.spots)
             if (spot.sensor_id == sensor_->id) {
@@ -216,20 +270,22 @@ class Proposer {
             spot.curve = curve_at(chain_, a, seen->point_mm);
             spot.reference_state = ReferenceState::from_drawing;
             spot.drawn = DrawingOrigin{drawing_.source, 0, 0, o_.edge, a.arc_mm, spot.reference_mm};
-            project_.spots.push_back(std::move(spot));
-            attitudes_.push_back(a);
-            covariances_.push_back(seen->covariance_mm2);
+            looked_->spots.push_back(std::move(spot));
+            looked_->attitudes.push_back(a);
+            looked_->covariances.push_back(seen->covariance_mm2);
         }
         return {};
     }
 
     Expected<PlacingTask> placing_task() {
+        Project project = looked_->project;
+        project.spots = looked_->spots;
         Region region = region_;
-        for (const Spot& spot : project_.spots) region.spot_ids.push_back(spot.id);
-        project_.regions = {region};
-        SEAM_TRY(auto task, task_of(project_, region, out_.bead));
+        for (const Spot& spot : project.spots) region.spot_ids.push_back(spot.id);
+        project.regions = {region};
+        SEAM_TRY(auto task, task_of(project, region, out_.bead));
         for (std::size_t i = 0; i < task.candidates.size(); ++i)
-            task.candidates[i].place = attitudes_[i].place;
+            task.candidates[i].place = looked_->attitudes[i].place;
         task.three_sigma_mm = o_.three_sigma_mm;
         task.one_may_be_lost = o_.one_may_be_lost;
         task.seed = o_.seed;
@@ -237,25 +293,8 @@ class Proposer {
     }
 
     void take_spots() {
-        Project proposed = project_;
-        proposed.spots.clear();
-        Region region = region_;
-        for (const std::size_t c : out_.set.chosen) {
-            ProposedSpot p;
-            p.spot = project_.spots[c];
-            p.spot.id = free_id();
-            p.arc_mm = attitudes_[c].arc_mm;
-            p.turned_deg = attitudes_[c].turned_deg;
-            const Eigen::Matrix2d& s = covariances_[c];
-            const double mean = s.trace() / 2, off = std::hypot((s(0, 0) - s(1, 1)) / 2, s(0, 1));
-            p.sigma_mm = {std::sqrt(mean + off), std::sqrt(std::max(0.0, mean - off))};
-            p.point_mm = attitudes_[c].workobject_from_sensor * p.spot.reference_mm;
-            proposed.spots.push_back(p.spot);
-            region.spot_ids.push_back(p.spot.id);
-            out_.spots.push_back(std::move(p));
-        }
-        if (const auto forecast = forecast_region(proposed, region))
-            out_.sigma_forecast_mm = forecast->sigma_mm;
+        for (const std::size_t c : out_.set.chosen) out_.spots.push_back(looked_->spot(c, free_id()));
+        out_.sigma_forecast_mm = looked_->forecast_mm(out_.spots);
     }
     std::string free_id() const {
         for (std::size_t n = 1;; ++n) {
@@ -275,9 +314,7 @@ class Proposer {
     const Calibration* calibration_ = nullptr;
     Region region_;  // without spots
     EdgeChain chain_;
-    Project project_;  // with a spot a candidate
-    std::vector<Attitude> attitudes_;
-    std::vector<Eigen::Matrix2d> covariances_;
+    std::shared_ptr<Looked> looked_ = std::make_shared<Looked>();
     Proposal out_;
 };
 
@@ -310,6 +347,60 @@ Expected<std::vector<BeadPoint>> bead_of(const Drawing& drawing, const std::stri
 Expected<Proposal> propose_spots(const Project& project, const Drawing& drawing,
                                  const ProposeOptions& options) {
     return Proposer(project, drawing, options).propose();
+}
+
+std::vector<Eigen::Vector3d> places_of(const Proposal& proposal) {
+    std::vector<Eigen::Vector3d> points;
+    if (!proposal.looked) return points;
+    int last = -1;
+    for (const Attitude& a : proposal.looked->attitudes)
+        if (a.place != std::exchange(last, a.place)) points.push_back(a.workobject_from_sensor.translation());
+    return points;
+}
+
+Expected<Proposal> move_proposed(const Proposal& proposal, const std::string& spot_id, std::size_t place) {
+    const auto of = std::find_if(proposal.spots.begin(), proposal.spots.end(),
+                                 [&](const ProposedSpot& p) { return p.spot.id == spot_id; });
+    if (!proposal.looked || of == proposal.spots.end())
+        return input_error(Text("there is no proposed spot \"{}\"", spot_id));
+    const Looked& looked = *proposal.looked;
+    const std::vector<int> places = looked.places();
+    if (place >= places.size()) return input_error("nothing is seen there", Text("spot {}", spot_id));
+    const auto at = static_cast<std::size_t>(of - proposal.spots.begin());
+    std::vector<std::size_t> chosen = proposal.set.chosen;
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+        if (i != at && looked.attitudes[chosen[i]].place == places[place])
+            return input_error("another spot stands there", Text("spot {}", spot_id));
+    const Attitude& was = looked.attitudes[chosen[at]];
+    const auto travels = [](const Attitude& a) { return a.workobject_from_sensor.linear().col(1).eval(); };
+    std::optional<PlacedSet> best;
+    for (std::size_t c = 0; c < looked.attitudes.size(); ++c) {
+        const Attitude& a = looked.attitudes[c];
+        if (a.place != places[place]) continue;
+        chosen[at] = c;
+        PlacedSet set = looked.placing->judge(chosen);
+        const bool as_it_was = a.turned_deg == was.turned_deg && travels(a).dot(travels(was)) > 0;
+        if (as_it_was || !best || set.three_sigma_mm < best->three_sigma_mm) best = std::move(set);
+        if (as_it_was) break;
+    }
+    std::vector<Eigen::Vector3d> points;
+    std::vector<ProposedSpot> spots;
+    for (std::size_t i = 0; i < best->chosen.size(); ++i) {
+        spots.push_back(looked.spot(best->chosen[i], proposal.spots[i].spot.id));
+        points.push_back(spots.back().point_mm);
+    }
+    Proposal moved = proposal;
+    moved.spots.clear();
+    moved.set = *best;
+    moved.set.chosen.clear();
+    for (const std::size_t i : short_way(points, moved.set.way_mm)) {
+        moved.spots.push_back(std::move(spots[i]));
+        moved.set.chosen.push_back(best->chosen[i]);
+    }
+    moved.along_mm = looked.placing->along_bead(moved.set.chosen);
+    moved.sigma_forecast_mm = looked.forecast_mm(moved.spots);
+    moved.set.enough = best->enough && 3 * moved.sigma_forecast_mm <= looked.three_sigma_mm;
+    return moved;
 }
 
 }  // namespace seamwright

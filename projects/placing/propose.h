@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -50,23 +51,37 @@ struct ProposedSpot {
     double turned_deg = 0;                               // about the edge, from the middle of the normals
     Eigen::Vector2d sigma_mm = Eigen::Vector2d::Zero();  // of its feature, the larger first
     Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();  // its reference, work object
+    std::size_t place = 0;                               // of places_of()
 };
+
+struct Looked;  // all candidates of a proposal, with what they see
 
 struct Proposal {
     std::vector<ProposedSpot> spots;
-    PlacedSet set;        // indices are of no meaning here; enough: by its own measure and by the gate's
-    double bound_mm = 0;  // no set of as many spots among these candidates has a smaller 3 sigma
+    PlacedSet set;                 // chosen: of `looked`; enough: by its own measure and by the gate's
+    double bound_mm = 0;           // no set of as many spots among these candidates has a smaller 3 sigma
     double bound_of_fewer_mm = 0;  // the same for one spot less; 0: there is none
     std::vector<double> along_mm;  // 3 sigma at every point of the bead
     std::vector<BeadPoint> bead;
     int places = 0, candidates = 0, tried = 0;  // tried: attitudes; candidates: those that see something
     double sigma_forecast_mm = 0;  // as the safety gate will judge it (forecast.h), one standard deviation
+    std::shared_ptr<const Looked> looked = nullptr;
 };
 
 // Error (input): no such edge or region, a sensor without calibration, options out of range, too few places see a feature; (usage)
 // cancelled.
 Expected<Proposal> propose_spots(const Project& project, const Drawing& drawing,
                                  const ProposeOptions& options);
+
+// Where a spot of the proposal can be moved to: the places along the chain that see a feature, work object, in the order of
+// the chain. Empty without `looked`.
+std::vector<Eigen::Vector3d> places_of(const Proposal& proposal);
+
+// The proposal with one spot at another place (an index of places_of()), turned as it was where that sees a feature there,
+// else as leaves the bead best known. Spots keep their names and stand in the order of the new way; set, forecast and along_mm are new, the bounds
+// are those of all sets of as many and stay. For ghosts that are dragged: some milliseconds. Error (input): no such
+// spot or place, another spot stands there.
+Expected<Proposal> move_proposed(const Proposal& proposal, const std::string& spot_id, std::size_t place);
 
 // The same measure of a region's spots as they are: 3 sigma across the bead at its worst point, and with the worst spot
 // lost. Error: what SpotPlacing refuses, a spot that cannot be planned.

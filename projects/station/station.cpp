@@ -54,7 +54,7 @@ struct Station::Impl {
         RunRecord run{};
         std::map<std::string, SpotMeasurer> measurers{};
         std::map<std::string, TriggeredFrames> frames{};  // by sensor
-        std::vector<std::string> started_robots{};        // wait for the verdict
+        std::vector<std::string> started_robots{};        // and the one that called: they wait for the verdict
         StartedSensors started_sensors{};                 // stopped when the robots have it
         std::map<std::string, SensorLight> light{};       // by sensor; set back before they stop
         std::int64_t part_since_ns = 0;
@@ -167,7 +167,7 @@ struct Station::Impl {
         };
         for (auto& [id, light] : job.light) SEAM_OK(next_of(id, spots.begin()));
         SEAM_OK(robot.start_measuring(measuring_program(job.project, robot_id)));
-        job.started_robots.push_back(robot_id);
+        if (robot_id != job.options.caller) job.started_robots.push_back(robot_id);
         std::set<std::string> open;
         for (const Spot* spot : spots) open.insert(spot->id);
         while (!open.empty()) {
@@ -675,6 +675,7 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
                       : Text("the paint is {}, which no spot knows: measured with the spots' own settings",
                              options.paint));
 
+    if (i.robots.count(options.caller)) job.started_robots.push_back(options.caller);
     auto measured = i.measure_all(job);
     const bool cancelled = options.cancel.stop_requested();
     if (measured && !cancelled)

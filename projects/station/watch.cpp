@@ -73,6 +73,7 @@ class Watch {
                 SEAM_TRY(auto connected, connect());
                 if (!connected) continue;
             }
+            if (sensor_dead_ && std::chrono::steady_clock::now() >= look_again_) sensor_dead_ = !sensors_answer();
             SEAM_TRY(auto start, next_start());
             if (!start.has_value()) continue;
             if (const auto part = named(*start)) SEAM_OK(measure(*part));
@@ -114,18 +115,40 @@ class Watch {
     void lost(const Text& subject, const Error& error) {
         if (state_ != WatchState::lost) {
             state_ = WatchState::lost;
-            ++counts_.lost;
-            // An event that the file does not take is told all the same; the next run's record shows the
-            // file's Error.
-            (void)station_.file().append_event(
-                {0, utc_now(), 0, EventKind::alarm, subject.english(), Text("lost: {}", error.text())});
-            tell(WatchLevel::alarm, watched::Lost{subject.english(), error.code},
-                 Text("{} is lost: {}", subject, error.text()));
+            tell_lost(subject, error);
         }
         pause();
     }
 
+    void tell_lost(const Text& subject, const Error& error) {
+        ++counts_.lost;
+        // An event that the file does not take is told all the same; the next run's record shows the
+        // file's Error.
+        (void)station_.file().append_event(
+            {0, utc_now(), 0, EventKind::alarm, subject.english(), Text("lost: {}", error.text())});
+        tell(WatchLevel::alarm, watched::Lost{subject.english(), error.code},
+             Text("{} is lost: {}", subject, error.text()));
+    }
+
+    // Whether every sensor can be started, as the next part would; the first one that cannot is kept in dead_.
+    bool sensors_answer() {
+        for (const SensorSetup& setup : station_.project().sensors) {
+            ProfileSource* sensor = station_.sensor(setup.id);
+            if (!sensor) continue;
+            auto started = sensor->start();
+            sensor->stop();
+            if (started) continue;
+            dead_.emplace(Text("sensor {}", setup.id), started.error());
+            look_again_ = std::chrono::steady_clock::now() + retry_;
+            retry_ = std::min(2 * retry_, options_.retry_longest);
+            return false;
+        }
+        return true;
+    }
+
+    // All answer. A call is heard while a sensor is dead, too: the robot is told at once that its part failed.
     void ready() {
+        if (sensor_dead_) return;
         retry_ = options_.retry_first;
         if (state_ == WatchState::lost) {
             (void)station_.file().append_event(
@@ -297,6 +320,7 @@ class Watch {
         run.part_id = part.id;
         run.part_type = part.type;
         run.paint = part.paint;
+        run.caller = caller_;
         run.push = options_.push;
         run.keep_images = options_.keep_images;
         run.limits = options_.limits;
@@ -318,7 +342,9 @@ class Watch {
          : alarm                 ? counts_.alarms
          : failed                ? counts_.failed
                                  : counts_.refused) += 1;
-        state_ = WatchState::waiting;
+        // No wait for a start finds out that a sensor is dead.
+        const bool was_dead = std::exchange(sensor_dead_, status == RunStatus::device && !sensors_answer());
+        state_ = was_dead || sensor_dead_ ? WatchState::lost : WatchState::waiting;
         const auto done = std::make_shared<const RunRecord>(std::move(record));
         const DriftStanding& drift = station_.drift();
         Text said("{}: {}", named_part({done->part_id, done->type_id}), done->message);
@@ -328,6 +354,7 @@ class Watch {
              : status == RunStatus::ok                             ? WatchLevel::info
                                                                    : WatchLevel::warning,
              watched::RunDone{done, took.count(), drift}, std::move(said));
+        if (sensor_dead_ && !was_dead) tell_lost(dead_->first, dead_->second);
         return forget_old_runs();
     }
 
@@ -374,6 +401,9 @@ class Watch {
     bool calls_heard_ = false;                                   // line_over() of this part
     std::optional<std::pair<std::string, StartSignal>> called_;  // by which robot, while a part was released
     std::chrono::milliseconds retry_;
+    bool sensor_dead_ = false;                    // since a run that a device ended
+    std::optional<std::pair<Text, Error>> dead_;  // which one, and what it said
+    std::chrono::steady_clock::time_point look_again_{};
 };
 
 }  // namespace

@@ -442,6 +442,18 @@
         <source>%1 spots are in region %2, from the drawing: confirm each on the part (step Teach) before anything is pushed.</source>
         <translation>%1 Messstellen sind in Region %2, aus der Zeichnung: Bestätigen Sie jede am Teil (Schritt Einlernen), bevor etwas übertragen wird.</translation>
     </message>
+    <message>
+        <source>Back along the edge</source>
+        <translation>An der Kante zurück</translation>
+    </message>
+    <message>
+        <source>The chosen spot to the next free place; or drag its ghost in the 3D view</source>
+        <translation>Die gewählte Messstelle an den nächsten freien Platz; oder ihren Geist in der 3D-Ansicht ziehen</translation>
+    </message>
+    <message>
+        <source>On along the edge</source>
+        <translation>An der Kante weiter</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::StripePanel</name>

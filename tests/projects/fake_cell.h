@@ -34,6 +34,7 @@ struct FakeCell {
     // Faults.
     std::vector<Text> notices;  // the robot link tells them once
     std::string silent_sensor_at, silent_robot_at, damaged_at, empty_at, wrong_spot_at;
+    bool dead_sensor = false;  // cannot be started
     SensorIdentity sensor_identity{"fake", "Seamwright", "S1", "0001"};
     RobotIdentity robot_identity{"fake", "KUKA", "KR", "0002"};
     RobotMode mode = RobotMode::external;
@@ -81,6 +82,7 @@ class FakeSensor : public ProfileSource {
     explicit FakeSensor(FakeCell& cell) : cell_(cell) {}
     SensorIdentity identity() const override { return cell_.sensor_identity; }
     Expected<void> start() override {
+        if (cell_.dead_sensor) return device_error(ErrorCode::disconnected, kDisconnected, "sensor A");
         started = true;
         return {};
     }

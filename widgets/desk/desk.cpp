@@ -682,7 +682,11 @@ void Desk::set_recipes() {
         recipe.filter = sensor.filter;
         for (const Calibration& c : project_.calibrations)
             if (c.id == sensor.calibration_id) recipe.model = c.model;
-        if (selected && selected->sensor_id == sensor.id) recipe.feature = selected->feature;
+        if (selected && selected->sensor_id == sensor.id) {
+            recipe.feature = selected->feature;
+            recipe.taught = selected->reference_profile;
+            recipe.taught_at_mm = {selected->reference_mm.x(), selected->reference_mm.z()};
+        }
         live_.set_recipe(sensor.id, recipe);
     }
 }

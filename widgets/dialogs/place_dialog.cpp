@@ -126,6 +126,14 @@ PlaceDialog::PlaceDialog(Desk& desk, SceneView& scene, QWidget* parent)
                         tr("In the order of the way; sigma of the feature, the larger one"));
     spots_->setMinimumHeight((kRowsSeen + 1) * style::kTargetPx);
     box->addWidget(spots_, 1);
+    back_ = make_button("place_back", "up", tr("Back along the edge"),
+                        tr("The chosen spot to the next free place; or drag its ghost in the 3D view"),
+                        [this] { step(-1); });
+    on_ = make_button("place_on", "down", tr("On along the edge"),
+                      tr("The chosen spot to the next free place; or drag its ghost in the 3D view"),
+                      [this] { step(1); });
+    box->addLayout(make_row({back_, on_}));
+    connect(spots_, &QTableWidget::currentCellChanged, this, [this] { state(); });
     take_ =
         make_button("place_take", "teach", tr("Take them into the project"),
                     tr("From the drawing, not confirmed: nothing is pushed by them until they are measured"),
@@ -135,6 +143,7 @@ PlaceDialog::PlaceDialog(Desk& desk, SceneView& scene, QWidget* parent)
     connect(edge_, &QComboBox::currentIndexChanged, this, [this] { show_edge(); });
     connect(region_, &QComboBox::currentIndexChanged, this, [this] { forget_proposal(); });
     connect(&scene_, &SceneView::edge_picked, this, &PlaceDialog::choose_edge);
+    connect(&scene_, &SceneView::proposed_dragged, this, &PlaceDialog::drag);
     connect(&desk_, &Desk::opened, this, &QDialog::close);
     const auto regions = [this] {
         filling_ = true;
@@ -164,6 +173,8 @@ void PlaceDialog::state() {
     propose_->setEnabled(!working_ && read_ && edge_->count() > 0);
     cancel_->setEnabled(working_);
     take_->setEnabled(!working_ && proposal_ && proposal_->set.enough);
+    for (QPushButton* step : {back_, on_})
+        step->setEnabled(!working_ && proposal_ && spots_->currentRow() >= 0);
     if (!working_) progress_->setValue(0);
 }
 
@@ -342,6 +353,47 @@ void PlaceDialog::show_proposal(Expected<Proposal> proposal) {
     }
     set_rows(*spots_, rows);
     scene_.set_proposed(ghosts);
+}
+
+bool PlaceDialog::move_to(const std::string& spot_id, std::size_t place) {
+    auto moved = move_proposed(*proposal_, spot_id, place);
+    if (!moved) return false;  // another one stands there
+    show_proposal(std::move(*moved));
+    const auto& spots = proposal_->spots;
+    const auto at =
+        std::find_if(spots.begin(), spots.end(), [&](const ProposedSpot& p) { return p.spot.id == spot_id; });
+    spots_->setCurrentCell(static_cast<int>(at - spots.begin()), 0);
+    state();
+    return true;
+}
+
+void PlaceDialog::drag(const QString& spot_id, const QPointF& at) {
+    if (working_ || !proposal_) return;
+    const std::vector<Eigen::Vector3d> places = places_of(*proposal_);
+    const auto away = [&](const Eigen::Vector3d& place) {
+        const QPointF d = scene_.to_screen(place) - at;
+        return std::hypot(d.x(), d.y());
+    };
+    const auto nearest = std::min_element(places.begin(), places.end(),
+                                          [&](const auto& a, const auto& b) { return away(a) < away(b); });
+    if (nearest == places.end()) return;
+    const auto place = static_cast<std::size_t>(nearest - places.begin());
+    const std::string id = spot_id.toStdString();
+    for (const ProposedSpot& p : proposal_->spots)
+        if (p.spot.id == id && p.place != place) {
+            move_to(id, place);
+            return;
+        }
+}
+
+void PlaceDialog::step(int way) {
+    if (working_ || !proposal_ || spots_->currentRow() < 0) return;
+    const ProposedSpot& spot = proposal_->spots[static_cast<std::size_t>(spots_->currentRow())];
+    const std::string id = spot.spot.id;
+    const std::size_t count = places_of(*proposal_).size();
+    for (std::size_t place = spot.place + static_cast<std::size_t>(way); place < count;
+         place += static_cast<std::size_t>(way))
+        if (move_to(id, place)) return;
 }
 
 void PlaceDialog::take() {

@@ -1,7 +1,7 @@
 #pragma once
 // Spots from the drawing (projects/placing): a drawing is read, the edge that the bead follows is picked in the scene or
-// from the list, spots along it are proposed with their forecast, and taken into the project as one edit: from the drawing,
-// not confirmed. Nothing moves a robot. Reading and proposing run beside the window and can be cancelled; a project that
+// from the list, spots along it are proposed with their forecast, moved along it if so wished (by dragging their ghosts or by
+// steps; the forecast follows), and taken into the project as one edit: from the drawing, not confirmed. Nothing moves a robot. Reading and proposing run beside the window and can be cancelled; a project that
 // is left closes it.
 
 #include <QCheckBox>
@@ -31,7 +31,10 @@ class PlaceDialog : public QDialog {
     void take_file(const QString& file);  // begins to read it
     void choose_edge(const QString& id);
     void propose();
-    void take();  // what was proposed
+    void drag(const QString& spot_id,
+              const QPointF& at);  // to the place that is nearest to the pointer in the scene
+    void step(int way);            // the chosen spot to the next free place, on (1) or back (-1)
+    void take();                   // what was proposed
     bool working() const { return working_; }
 
   private:
@@ -47,6 +50,7 @@ class PlaceDialog : public QDialog {
     void show_drawing(Expected<ReadDrawing> read);
     void show_edge();
     void show_proposal(Expected<Proposal> proposal);
+    bool move_to(const std::string& spot_id, std::size_t place);
     void forget_proposal();
     void state();
 
@@ -57,7 +61,7 @@ class PlaceDialog : public QDialog {
     NumberBox *wanted_, *cone_, *beyond_, *noise_;
     QSpinBox *fewest_, *most_;
     QCheckBox* lost_;
-    QPushButton *choose_, *propose_, *cancel_, *take_;
+    QPushButton *choose_, *propose_, *cancel_, *back_, *on_, *take_;
     QProgressBar* progress_;
     QLabel* verdict_;
     QTableWidget* spots_;

@@ -220,6 +220,7 @@ void SceneCanvas::mousePressEvent(QMouseEvent* event) {
     dragged_ = false;
     drawn_.clear();
     if (event->button() == Qt::RightButton || (lasso && event->button() == Qt::LeftButton)) drawn_ << press_;
+    held_ = event->button() == Qt::LeftButton && drawn_.isEmpty() && on_grab && on_grab(press_);
 }
 
 void SceneCanvas::mouseMoveEvent(QMouseEvent* event) {
@@ -231,6 +232,7 @@ void SceneCanvas::mouseMoveEvent(QMouseEvent* event) {
     dragged_ = dragged_ || (at - press_).manhattanLength() > 4;
     if (!dragged_) return;
     last_ = at;
+    if (held_) return on_drag(at);
     if (!drawn_.isEmpty()) {
         drawn_ << at;
         return update();
@@ -266,7 +268,8 @@ void SceneCanvas::mouseReleaseEvent(QMouseEvent* event) {
         update();
         if (on_encircled) on_encircled(drawn);
     }
-    if (!dragged_ && event->button() == Qt::LeftButton && on_click) on_click(event->position());
+    const bool held = std::exchange(held_, false);
+    if (!held && !dragged_ && event->button() == Qt::LeftButton && on_click) on_click(event->position());
 }
 
 void SceneCanvas::wheelEvent(QWheelEvent* event) {

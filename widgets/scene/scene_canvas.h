@@ -42,6 +42,10 @@ class SceneCanvas : public QWidget {
     std::optional<Eigen::Vector3d> pick(const QPointF& at, vtkActor& actor);
     std::function<void(const QPointF&)> on_click;
     std::function<void(const QPointF&)> on_hover;  // no button pressed
+    // Left button pressed: true takes hold of what is there, and until it is released on_drag() has the pointer
+    // instead of the camera.
+    std::function<bool(const QPointF&)> on_grab;
+    std::function<void(const QPointF&)> on_drag;
     // A line drawn around something: with the right button, or with the left one while `lasso` is set.
     std::function<void(const QPolygonF&)> on_encircled;
     bool lasso = false;
@@ -69,7 +73,7 @@ class SceneCanvas : public QWidget {
     QElapsedTimer since_;
     QPointF press_, last_;
     QPolygonF drawn_;  // the line so far; empty: none is drawn
-    bool ready_ = false, stale_ = true, dragged_ = false;
+    bool ready_ = false, stale_ = true, dragged_ = false, held_ = false;
 };
 
 }  // namespace seamwright

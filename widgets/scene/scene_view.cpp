@@ -116,6 +116,7 @@ struct SceneView::Impl {
     std::vector<std::string> chosen_edges;
     std::string lit_edge;
     std::vector<SceneSpot> proposed;
+    std::string held;  // of them
     std::vector<Eigen::Vector3d> picks;
     std::optional<SceneRobot> robot, next_robot;
     Pose part_shift = Pose::Identity();
@@ -135,10 +136,23 @@ struct SceneView::Impl {
     SceneLabels words() const;
     void paint_words(QPainter& painter) const { words().paint(painter, *canvas); }
     const SceneEdge* edge_at(const QPointF& at) const;
+    const SceneSpot* spot_at(const std::vector<SceneSpot>& among, const QPointF& at) const;
     void changed() {
         if (canvas) canvas->request_render();
     }
 };
+
+// The nearest on the screen.
+const SceneSpot* SceneView::Impl::spot_at(const std::vector<SceneSpot>& among, const QPointF& at) const {
+    const SceneSpot* nearest = nullptr;
+    double best = 18;  // px: a gloved click
+    for (const SceneSpot& one : among) {
+        const Eigen::Vector3d p = canvas->project(one.workobject_from_sensor * one.reference_mm);
+        const double distance = std::hypot(p.x() - at.x(), p.y() - at.y());
+        if (p.z() <= 1 && distance < best) best = distance, nearest = &one;
+    }
+    return nearest;
+}
 
 // The nearest on the screen, of several as near the one in front.
 const SceneEdge* SceneView::Impl::edge_at(const QPointF& at) const {
@@ -358,6 +372,9 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
         impl_->canvas->on_paint = [this](QPainter& painter) { impl_->paint_words(painter); };
         impl_->canvas->on_hover = [this](const QPointF& at) {
             if (impl_->edges.empty()) return;
+            if (!impl_->canvas->lasso)
+                impl_->canvas->setCursor(impl_->spot_at(impl_->proposed, at) ? Qt::OpenHandCursor
+                                                                             : Qt::ArrowCursor);
             const SceneEdge* edge = impl_->edge_at(at);
             const std::string id = edge ? edge->id : std::string();
             if (id == impl_->lit_edge) return;
@@ -367,23 +384,22 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
         impl_->canvas->on_click = [this](const QPointF& at) {
             if (const SceneEdge* edge = impl_->edge_at(at))
                 return emit edge_picked(QString::fromStdString(edge->id));
-            const SceneSpot* nearest = nullptr;
-            double best = 18;  // px: a gloved click
-            for (const SceneSpot& spot : impl_->spots) {
-                const Eigen::Vector3d p =
-                    impl_->canvas->project(spot.workobject_from_sensor * spot.reference_mm);
-                const double distance = std::hypot(p.x() - at.x(), p.y() - at.y());
-                if (p.z() <= 1 && distance < best) {
-                    best = distance;
-                    nearest = &spot;
-                }
-            }
+            const SceneSpot* nearest = impl_->spot_at(impl_->spots, at);
             if (!nearest && layer(Layer::part))
                 if (const auto hit = impl_->canvas->pick(at, impl_->manager(Layer::part)->actor()))
                     emit part_picked(hit->x(), hit->y(), hit->z());
             const std::string id = nearest ? nearest->id : std::string();
             if (id != impl_->spot) select_spot(id);
             emit spot_picked(QString::fromStdString(id));
+        };
+        impl_->canvas->on_grab = [this](const QPointF& at) {
+            const SceneSpot* ghost =
+                impl_->shown.at(Layer::edges) ? impl_->spot_at(impl_->proposed, at) : nullptr;
+            impl_->held = ghost ? ghost->id : std::string();
+            return ghost != nullptr;
+        };
+        impl_->canvas->on_drag = [this](const QPointF& at) {
+            emit proposed_dragged(QString::fromStdString(impl_->held), impl_->canvas->mapTo(this, at));
         };
         impl_->canvas->on_encircled = [this](const QPolygonF& line) {
             impl_->canvas->lasso = false;

@@ -92,7 +92,7 @@ class SceneView : public QWidget {
     void set_edges(std::vector<SceneEdge> edges);
     // From outside; no signal is sent for it. The first one is named in the picture, the others are its chain.
     void choose_edges(const std::vector<std::string>& ids);
-    // Spots that are not the project's yet, as ghosts.
+    // Spots that are not the project's yet, as ghosts; they can be taken hold of with the left button.
     void set_proposed(const std::vector<SceneSpot>& spots);
     void set_robot(const std::optional<SceneRobot>& robot);
     // Where the robot is to go next, half transparent beside where it stands; belongs to the robot's layer.
@@ -126,7 +126,8 @@ class SceneView : public QWidget {
     void spot_picked(QString id);                    // "" = nothing there
     void part_picked(double x, double y, double z);  // work object, mm
     void edge_picked(QString id);
-    void spots_encircled(QStringList ids);  // in the order of measuring; may be none
+    void proposed_dragged(QString id, QPointF at);  // of set_proposed(); the pointer in this widget
+    void spots_encircled(QStringList ids);          // in the order of measuring; may be none
 
   protected:
     void changeEvent(QEvent* event) override;

@@ -2,6 +2,7 @@
 
 #include "core/features/feature.h"
 #include "core/features/kinds/feature_registry.h"
+#include "core/features/registration/taught_stripe.h"
 #include "widgets/shown_text.h"
 
 namespace seamwright {
@@ -13,6 +14,7 @@ struct LiveFeed::Lane {
     std::shared_ptr<const LiveRecipe> recipe = std::make_shared<LiveRecipe>();
     bool recipe_changed = true;
     std::unique_ptr<FeatureFinder> finder;
+    std::optional<TaughtStripe> taught;
     std::optional<Feature> feature;  // last found
     std::uint64_t last_sequence = 0;
     std::int64_t last_time_ns = -1;
@@ -27,9 +29,10 @@ struct LiveFeed::Lane {
 
 namespace {
 
-// Frame -> peaks -> candidates -> tracked profile; the reason when there is none.
-Text convert(const Frame& frame, const LiveRecipe& recipe, ProfileCandidates& candidates,
-             LiveSnapshot& snapshot) {
+// Frame -> peaks -> candidates -> tracked profile; the reason when there is none. Where the taught contour cannot tell
+// the stripe from a reflection, the feature is ambiguous, as in a run.
+Text convert(const Frame& frame, const LiveRecipe& recipe, std::optional<TaughtStripe>& taught,
+             ProfileCandidates& candidates, LiveSnapshot& snapshot) {
     if (frame.status != FrameStatus::ok) return Text("damaged frame: {}", to_string(frame.status));
     if (frame.profile.size() > 0) {
         snapshot.profile = frame.profile;
@@ -42,8 +45,16 @@ Text convert(const Frame& frame, const LiveRecipe& recipe, ProfileCandidates& ca
         return found.error().text();
     if (!recipe.model) return "no calibration: the image has no millimetres";
     to_millimetres(snapshot.peaks, *recipe.model, candidates);
-    if (auto tracked = track_stripe(candidates, recipe.filter, snapshot.profile); !tracked)
-        return tracked.error().text();
+    if (!taught) {
+        const auto tracked = track_stripe(candidates, recipe.filter, snapshot.profile);
+        return tracked ? Text{} : tracked.error().text();
+    }
+    const auto choice = taught->track(candidates, recipe.filter, snapshot.profile);
+    if (!choice) return choice.error().text();
+    if (*choice == StripeChoice::undecided) {
+        snapshot.feature.emplace().status = FeatureStatus::ambiguous;
+        snapshot.feature->message = kTwoContours;
+    }
     return {};
 }
 
@@ -186,9 +197,14 @@ void LiveFeed::work(const std::stop_token& stop) {
                     lane->search_due = {};
                     lane->feature.reset();
                     lane->finder.reset();
+                    lane->taught.reset();
                     if (recipe->feature)
                         if (auto made = make_feature_finder(*recipe->feature))
                             lane->finder = std::move(*made);
+                    if (recipe->feature && recipe->taught.size() > 0)
+                        if (auto made = TaughtStripe::make(recipe->taught, recipe->taught_at_mm,
+                                                           search_window(*recipe->feature)))
+                            lane->taught.emplace(std::move(*made));
                 }
             }
             auto snapshot = std::make_shared<LiveSnapshot>();
@@ -196,8 +212,8 @@ void LiveFeed::work(const std::stop_token& stop) {
             snapshot->number = ++lane->number;
             snapshot->frame = frame;
             snapshot->counters = counters;
-            snapshot->trouble = convert(*frame, *recipe, lane->candidates, *snapshot);
-            if (!snapshot->trouble.empty()) {
+            snapshot->trouble = convert(*frame, *recipe, lane->taught, lane->candidates, *snapshot);
+            if (!snapshot->trouble.empty() || snapshot->feature) {
                 lane->feature.reset();
                 lane->search_due = {};
                 lane->search_owed = false;

@@ -31,6 +31,9 @@ struct LiveRecipe {
     FilterOptions filter;
     std::optional<SensorModel> model;      // absent: images have no millimetres
     std::optional<FeatureRecipe> feature;  // of the selected spot
+    // Its reference profile, which tells the stripe from its reflections as in a run; empty: none is taught.
+    Profile taught;
+    Eigen::Vector2d taught_at_mm = Eigen::Vector2d::Zero();
 };
 
 struct LiveSnapshot {

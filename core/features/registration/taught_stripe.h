@@ -18,6 +18,10 @@ enum class StripeChoice {
     undecided  // at two places the taught contour is seen about equally well
 };
 
+// What is said of `undecided`.
+inline constexpr const char* kTwoContours =
+    "two contours like the taught one are seen, and nothing tells which is the reflection";
+
 // Holds buffers: one thread each. Allocates nothing after its first calls with a second contour in the frame.
 class TaughtStripe {
   public:

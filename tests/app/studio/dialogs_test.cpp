@@ -263,6 +263,46 @@ TEST_F(Dialogs, SpotsAreProposedAlongAnEdgeOfTheDrawingAndTaken) {
     ASSERT_TRUE(QTest::qWaitFor([&] { return !dialog->working(); }, 6 * kPatienceMs));
     ASSERT_TRUE(take->isEnabled()) << word(*dialog, "place_verdict").toStdString();
     EXPECT_EQ(dialog->findChild<QTableWidget*>("place_spots")->rowCount(), 4);
+    // A spot is moved along the edge, by its ghost and by steps, and the forecast follows.
+    auto* table = dialog->findChild<QTableWidget*>("place_spots");
+    auto *back = dialog->findChild<QPushButton*>("place_back"),
+         *on = dialog->findChild<QPushButton*>("place_on");
+    EXPECT_FALSE(on->isEnabled()) << "none is chosen";
+    table->setCurrentCell(1, 0);
+    ASSERT_TRUE(on->isEnabled());
+    const auto row = [&] {
+        const int r = table->currentRow();
+        return table->item(r, 0)->text() + " " + table->item(r, 1)->text();
+    };
+    const QString proposed = row(), said = word(*dialog, "place_verdict");
+    on->click();
+    EXPECT_NE(row(), proposed);
+    EXPECT_EQ(row().section(' ', 0, 0), proposed.section(' ', 0, 0)) << "the same spot stays chosen";
+    EXPECT_NE(word(*dialog, "place_verdict"), said);
+    back->click();
+    EXPECT_EQ(row(), proposed);
+    EXPECT_EQ(word(*dialog, "place_verdict"), said);
+    if (scene->has_opengl()) {
+        QWidget* canvas = scene->focusProxy();
+        const auto send = [&](QEvent::Type type, const QPointF& at, Qt::MouseButtons held) {
+            QMouseEvent e(type, at, canvas->mapToGlobal(at), Qt::LeftButton, held, {});
+            QApplication::sendEvent(canvas, &e);
+        };
+        const auto chain = tangent_chain(drawing, bead->id);
+        const double arc = table->item(1, 1)->text().toDouble();
+        const auto at = [&](double along) {
+            return canvas->mapFrom(scene, scene->to_screen(chain->at(along).point_mm));
+        };
+        const double to = arc + (arc > chain->length_mm() / 2 ? -60 : 60);
+        const QImage camera = scene->picture().copy();
+        send(QEvent::MouseButtonPress, at(arc), Qt::LeftButton);
+        send(QEvent::MouseMove, (at(arc) + at(to)) / 2, Qt::LeftButton);
+        send(QEvent::MouseMove, at(to), Qt::LeftButton);
+        send(QEvent::MouseButtonRelease, at(to), Qt::NoButton);
+        EXPECT_NEAR(row().section(' ', 1).toDouble(), to, 30) << "the ghost did not follow the pointer";
+        EXPECT_NE(scene->picture(), camera);
+        EXPECT_EQ(edges->currentData().toString().toStdString(), bead->id) << "the press chose an edge";
+    }
     QApplication::processEvents();
     dialog->grab().save(QString(SEAMWRIGHT_SCREENS) + "/dialog_place.png");
     me.picture("spots_from_drawing");
@@ -274,7 +314,22 @@ TEST_F(Dialogs, SpotsAreProposedAlongAnEdgeOfTheDrawingAndTaken) {
     EXPECT_FALSE(take->isEnabled());
     desk.undo_stack().undo();
     EXPECT_EQ(desk.project().spots.size(), before) << "one step of undo";
+
+    // On the part each is confirmed by one click.
+    desk.undo_stack().redo();
+    ASSERT_EQ(desk.project().spots.size(), before + 4);
     dialog->close();
+    me.step(3);
+    ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
+    for (std::size_t i = before; i < before + 4; ++i) {
+        desk.selection().select_spot(desk.project().spots[i].id);
+        QApplication::processEvents();
+        me.click("head_deed");
+        ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
+        EXPECT_TRUE(
+            me.wait([&] { return desk.project().spots[i].reference_state == ReferenceState::measured; }))
+            << desk.project().spots[i].id << ": " << me.text_of("head_state").toStdString();
+    }
 }
 
 // Two sheets that come together to 3 mm in the middle: the plot, the stretch by its spots, and the nozzle that fits once it

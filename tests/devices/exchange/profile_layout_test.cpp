@@ -150,11 +150,11 @@ std::string raw(T value) {
 TEST(ProfileLayout, NumPyArrays) {
     std::string f8, f4, columns, xs, zs, three;
     for (int i = 0; i < 60; ++i) {
-        f8 += raw(x_of(i)) + raw(z_of(i));
-        f4 += raw(static_cast<float>(x_of(i))) + raw(static_cast<float>(z_of(i)));
+        f8.append(raw(x_of(i))).append(raw(z_of(i)));
+        f4.append(raw(static_cast<float>(x_of(i)))).append(raw(static_cast<float>(z_of(i))));
         xs += raw(x_of(i));
         zs += raw(z_of(i));
-        three += raw(x_of(i)) + raw(0.0) + raw(z_of(i));
+        three.append(raw(x_of(i))).append(raw(0.0)).append(raw(z_of(i)));
     }
     expect_contour(npy("<f8", "(60, 2)", f8));
     expect_contour(npy("<f4", "(60, 2)", f4), {}, 1e-3);

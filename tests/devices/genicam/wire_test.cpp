@@ -354,6 +354,8 @@ TEST_F(Wire, LostPacketsAreCountedAndNeverMeasured) {
 }
 
 TEST_F(Wire, UnpluggedAndPluggedInAgain) {
+    // On an address of its own: another program that wants a free one would take this one over while it is unplugged.
+    const auto taken = UdpSocket::bind("127.0.0.1", kGvcpPort);  // or another program has it already
     auto camera = serve(cell_);
     ASSERT_TRUE(camera) << camera.error().sentence();
     auto sensor = open({{"heartbeat_ms", 50}, {"reconnect_ms", 20}, {"reconnect_most_ms", 100}});

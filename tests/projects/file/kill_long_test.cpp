@@ -6,15 +6,15 @@
 namespace seamwright {
 
 TEST(KillLong, Kills) {
-    kill_while_appending(80, 2, false);
+    kill_while_appending(40, 2, false);
 }
 
 TEST(KillLong, KillsWithWriteAheadLog) {
-    kill_while_appending(80, 4, true);
+    kill_while_appending(40, 4, true);
 }
 
 TEST(FlippedBitsLong, OfTheFile) {
-    flip_bits_of_the_file(2500, 3);
+    flip_bits_of_the_file(1200, 3);
 }
 
 TEST(FlippedBitsLong, OfTheRows) {

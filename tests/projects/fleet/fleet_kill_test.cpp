@@ -18,7 +18,7 @@
 namespace seamwright {
 namespace {
 
-constexpr int kRounds = 20, kRunsARound = 250;
+constexpr int kRounds = 8, kRunsARound = 250;
 
 TEST(FleetKill, EveryRunOnceWhateverDies) {
     std::string why;

@@ -229,6 +229,37 @@ TEST_F(LineWatched, TheLinesWordsGoWithTheRobotsCall) {
     EXPECT_EQ(station->file().runs()->at(0).part_id, "815");
 }
 
+// The line fell behind: what it still says is of the part before.
+TEST_F(LineWatched, WhatTheLineSaysOfAnotherPartIsNotTaken) {
+    watch_with({server({{"start", "robot"}})}, 3);
+    Plc plc(port);
+    plc.write(2, 0);
+    plc.write(5, 815);
+    const auto call = [&](const char* id) {
+        cell->starts.push_back(StartSignal{
+            id, std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1)});
+        cell->starts.push_back(device_error(ErrorCode::silence, kNoAnswer));
+    };
+    std::vector<LinePart> parts;
+    options.tell = [&, tell = options.tell](const WatchEvent& e) {
+        tell(e);
+        if (!std::holds_alternative<watched::RunDone>(e.happening)) return;
+        parts.push_back(control->state().part);
+        if (parts.size() == 1) call("815");
+        if (parts.size() == 2) call("816");
+    };
+    call("A7");  // by another name than the line's: nothing to be told from that
+    const auto counts = watch(*station, options);
+    ASSERT_TRUE(counts) << counts.error().sentence();
+    ASSERT_EQ(parts.size(), 3U);
+    EXPECT_EQ(parts[0].number, 815U);
+    EXPECT_EQ(parts[1].number, 815U);
+    EXPECT_EQ(parts[2], LinePart{});
+    EXPECT_EQ(station->file().runs()->at(2).part_id, "816");
+    EXPECT_THAT(texts,
+                HasSubstr("line: part 816: the line speaks of part 815, nothing of that is taken for it"));
+}
+
 // A broker that is not there, a PLC that answers nobody: the parts take as long as without them.
 TEST_F(LineWatched, WhoIsAwayDelaysNoPart) {
     const auto silent = TcpListener::listen("127.0.0.1", 0);

@@ -185,6 +185,59 @@ TEST(Propose, StaysNearTheBeadWhereItIsToldTo) {
     EXPECT_NE(refused.error().sentence().find("there is no region \"nowhere\""), std::string::npos);
 }
 
+TEST(Propose, ASpotIsMovedAndTheForecastFollows) {
+    ProposeOptions o = quick(4, 4, 1);
+    o.step_mm = 60;
+    auto proposal = propose_spots(world().project, world().drawing, o);
+    ASSERT_TRUE(proposal) << proposal.error().sentence();
+    const std::vector<Eigen::Vector3d> places = places_of(*proposal);
+    ASSERT_EQ(static_cast<int>(places.size()), proposal->places);
+    const std::string id = proposal->spots[1].spot.id;
+    const std::size_t was = proposal->spots[1].place;
+    EXPECT_LT((places[was] - proposal->spots[1].point_mm).norm(), 5);
+    const auto spot = [&](const Proposal& p) -> const ProposedSpot& {
+        return *std::find_if(p.spots.begin(), p.spots.end(),
+                             [&](const ProposedSpot& s) { return s.spot.id == id; });
+    };
+    int moved_to = 0, worse = 0;
+    for (std::size_t place = 0; place < places.size(); ++place) {
+        const auto moved = move_proposed(*proposal, id, place);
+        if (!moved) {
+            EXPECT_NE(moved.error().sentence().find("another spot stands there"), std::string::npos);
+            continue;
+        }
+        ++moved_to;
+        EXPECT_EQ(spot(*moved).place, place);
+        EXPECT_LT((places[place] - spot(*moved).point_mm).norm(), 5);
+        // The same numbers as the spots have in a project of their own.
+        Project taken = world().project;
+        Region region;
+        region.id = "taken";
+        taken.spots.clear();
+        for (const ProposedSpot& p : moved->spots)
+            taken.spots.push_back(p.spot), region.spot_ids.push_back(p.spot.id);
+        const auto judged = judge_spots(taken, region, proposal->bead);
+        ASSERT_TRUE(judged) << judged.error().sentence();
+        EXPECT_NEAR(judged->three_sigma_mm, moved->set.three_sigma_mm, 1e-6);
+        EXPECT_NEAR(forecast_region(taken, region)->sigma_mm, moved->sigma_forecast_mm, 1e-9);
+        EXPECT_NEAR(moved->set.three_sigma_mm,
+                    *std::max_element(moved->along_mm.begin(), moved->along_mm.end()), 1e-9);
+        worse += moved->set.three_sigma_mm > proposal->set.three_sigma_mm + 1e-9;
+        const auto back = move_proposed(*moved, id, was);
+        ASSERT_TRUE(back);
+        EXPECT_EQ(back->set.chosen, proposal->set.chosen);
+        EXPECT_EQ(back->set.three_sigma_mm, proposal->set.three_sigma_mm);
+        EXPECT_EQ(back->sigma_forecast_mm, proposal->sigma_forecast_mm);
+    }
+    EXPECT_EQ(moved_to, proposal->places - 3) << "all places but those of the others";
+    EXPECT_GE(worse, moved_to / 2) << "what was proposed is nearly the best";
+    EXPECT_FALSE(move_proposed(*proposal, "P99", was));
+    EXPECT_FALSE(move_proposed(*proposal, id, places.size()));
+    proposal->looked.reset();
+    EXPECT_TRUE(places_of(*proposal).empty());
+    EXPECT_FALSE(move_proposed(*proposal, id, was));
+}
+
 TEST(Propose, SpotsSeeTheirFeatureWhereTheDrawingHasItAndMayBeLost) {
     const auto proposal = propose_spots(world().project, world().drawing, quick(4, 12, 0.35));
     ASSERT_TRUE(proposal) << proposal.error().sentence();

@@ -6,55 +6,16 @@
 #include "tests/allocations.h"
 #include "tests/projects/fake_cell.h"
 #include "tests/projects/sample_project.h"
+#include "tests/projects/stripe_frame.h"
 
 namespace seamwright {
 namespace {
 
-// A camera that looks at the laser plane under 30 degrees from 300 mm.
-SensorModel camera_model() {
-    SensorModel model;
-    model.camera = {1500, 1500, 319.5, 239.5, 0, 0, 0, 0, 0, 640, 480};
-    model.camera_from_laser = make_pose(rotation_exp({rad_from_deg(30) - kPi / 2, 0, 0}), {0, 0, 300});
-    return model;
-}
-
-// A copy of the stripe, so many rows below it, from a column on.
-struct Ghost {
-    double grey = 0, rows = 60;
-    int from = 0;
-};
-constexpr Ghost kFaint{110};
-
-// A stripe on the line from (-40, z) to (end, z + slope) in the sensor frame, and its ghost.
-void draw(Frame& frame, const SensorModel& model, double end_mm, double height_mm, double slope,
-          const Ghost& ghost = {}) {
-    frame.pixels.assign(640 * 480, std::byte{8});
-    for (int u = 0; u < 640; ++u) {
-        double x = -40;  // the x whose image lies in this column, by bisection
-        double low = -60, high = 60;
-        for (int i = 0; i < 60; ++i) {
-            x = 0.5 * (low + high);
-            (model.to_pixel({x, height_mm + slope * x})->x() < u ? low : high) = x;
-        }
-        if (x > end_mm) continue;
-        const double v = model.to_pixel({x, height_mm + slope * x})->y();
-        for (int row = 0; row < 480; ++row) {
-            double grey = 200 * std::exp(-0.5 * std::pow((row - v) / 2.0, 2));
-            if (u >= ghost.from)
-                grey += ghost.grey * std::exp(-0.5 * std::pow((row - v - ghost.rows) / 2.0, 2));
-            auto& pixel = frame.pixels[static_cast<std::size_t>(row * 640 + u)];
-            pixel = static_cast<std::byte>(
-                std::min(255, static_cast<int>(pixel) + static_cast<int>(std::lround(grey))));
-        }
-    }
-    frame.image = {frame.pixels.data(), 640, 480, 640, 8};
-    frame.profile.clear();
-    frame.status = FrameStatus::ok;
-}
+constexpr StripeGhost kFaint{110};
 
 Project image_project() {
     Project project = make_fake_cell()->project;
-    project.calibrations[0].model = camera_model();
+    project.calibrations[0].model = stripe_camera();
     return project;
 }
 
@@ -64,7 +25,7 @@ TEST(Measure, ImageToPointInMillimetres) {
     ASSERT_TRUE(measurer) << measurer.error().sentence();
     Frame frame;
     for (const bool ghost : {false, true}) {
-        draw(frame, camera_model(), 12.3, 5.0, 0.1, ghost ? kFaint : Ghost{});
+        draw_stripe(frame, stripe_camera(), 12.3, 5.0, 0.1, ghost ? kFaint : StripeGhost{});
         const SpotMeasurement& m = measurer->measure(frame);
         ASSERT_EQ(m.status, SpotStatus::measured) << m.message;
         EXPECT_NEAR(m.feature.point_mm.x(), 12.3, 0.25);  // the pitch is 0.2 mm
@@ -89,7 +50,7 @@ TEST(Measure, ImageToPointInMillimetres) {
 TEST(Measure, AGhostIsToldByTheReferenceProfile) {
     Project project = image_project();
     Frame frame;
-    draw(frame, camera_model(), 12.3, 5.0, 0.1);
+    draw_stripe(frame, stripe_camera(), 12.3, 5.0, 0.1);
     {
         auto teaching = SpotMeasurer::make(project, "S1");
         ASSERT_TRUE(teaching);
@@ -105,7 +66,7 @@ TEST(Measure, AGhostIsToldByTheReferenceProfile) {
 
     // Over the end of the contour only.
     for (const double rows : {-50., 45., 70.}) {
-        draw(frame, camera_model(), 13.1, 5.4, 0.1, {255, rows, 260});
+        draw_stripe(frame, stripe_camera(), 13.1, 5.4, 0.1, {255, rows, 260});
         const SpotMeasurement& m = measurer->measure(frame);
         ASSERT_EQ(m.status, SpotStatus::measured) << m.message << ", " << rows << " rows";
         EXPECT_NEAR(m.feature.point_mm.x(), 13.1, 0.25);
@@ -113,7 +74,7 @@ TEST(Measure, AGhostIsToldByTheReferenceProfile) {
         EXPECT_EQ(exact_text(measurer->measure(Capture(measurer->capture()))), exact_text(m));
     }
     // As long as the stripe: nothing tells, and that is said.
-    draw(frame, camera_model(), 12.3, 5.0, 0.1, {255, 60, 0});
+    draw_stripe(frame, stripe_camera(), 12.3, 5.0, 0.1, {255, 60, 0});
     EXPECT_EQ(alone->measure(frame).status, SpotStatus::measured) << "one of the two";
     const SpotMeasurement& m = measurer->measure(frame);
     EXPECT_EQ(m.status, SpotStatus::no_feature);
@@ -126,7 +87,7 @@ TEST(Measure, FinishedProfileSkipsTheImage) {
     auto measurer = SpotMeasurer::make(cell->project, "S1");
     ASSERT_TRUE(measurer);
     Frame frame;
-    draw(frame, camera_model(), 12.3, 5.0, 0.1);
+    draw_stripe(frame, stripe_camera(), 12.3, 5.0, 0.1);
     frame.profile = cell->cut(cell->project.spots[0]);
     const SpotMeasurement& m = measurer->measure(frame);
     ASSERT_EQ(m.status, SpotStatus::measured) << m.message;
@@ -140,7 +101,7 @@ TEST(Measure, DamagedEmptyAndUncalibratedFrames) {
     auto measurer = SpotMeasurer::make(project, "S1");
     ASSERT_TRUE(measurer);
     Frame frame;
-    draw(frame, camera_model(), 12.3, 5.0, 0.1);
+    draw_stripe(frame, stripe_camera(), 12.3, 5.0, 0.1);
     for (const FrameStatus status : {FrameStatus::incomplete, FrameStatus::corrupt, FrameStatus::late}) {
         frame.status = status;
         EXPECT_EQ(measurer->measure(frame).status, SpotStatus::damaged_frame);
@@ -158,7 +119,7 @@ TEST(Measure, DamagedEmptyAndUncalibratedFrames) {
     project.sensors[0].calibration_id.clear();
     measurer = SpotMeasurer::make(project, "S1");
     ASSERT_TRUE(measurer);
-    draw(frame, camera_model(), 12.3, 5.0, 0.1);
+    draw_stripe(frame, stripe_camera(), 12.3, 5.0, 0.1);
     EXPECT_EQ(measurer->measure(frame).status, SpotStatus::no_calibration);
     // A finished profile gives its feature; no correction uses it.
     auto cell = make_fake_cell();
@@ -249,7 +210,7 @@ TEST(Allocations, NoneAfterTheFirstProfile) {
         std::vector<Frame> frames(6);
         for (std::size_t i = 0; i < frames.size(); ++i) {
             if (std::string(id) == "S1") {
-                draw(frames[i], camera_model(), 12.7 - 0.2 * static_cast<double>(i % 3), 5.0, 0.1, kFaint);
+                draw_stripe(frames[i], stripe_camera(), 12.7 - 0.2 * static_cast<double>(i % 3), 5.0, 0.1, kFaint);
             } else {
                 frames[i].profile = cell->cut(cell->project.spots[1]);
                 bend(frames[i].profile);

@@ -162,6 +162,31 @@ TEST_F(Watching, SurvivesALostSensor) {
     EXPECT_THAT(told, ElementsAre("info start", "alarm run", "info start", "info run", "info stopped"));
 }
 
+// The line must not see a station ready for the next part whose camera is unplugged; its robot is answered all the same.
+TEST_F(Watching, IsNotReadyWhileASensorIsDead) {
+    cell->dead_sensor = true;
+    std::vector<std::string> states;
+    options.tell = [&](const WatchEvent& e) {
+        if (std::holds_alternative<watched::SpotDone>(e.happening)) return;
+        states.push_back(fmt::format("{} {}", name_of(e.happening), to_string(e.state)));
+        texts += e.text.english() + "\n";
+        if (states.size() == 5) cell->dead_sensor = false;
+        if (std::holds_alternative<watched::Back>(e.happening)) part("CAR-3");
+    };
+    part("CAR-1");
+    part("CAR-2");
+    options.parts = 3;
+    auto counts = watch(*station, options);
+    ASSERT_TRUE(counts);
+    EXPECT_EQ(counts->failed, 2);
+    EXPECT_EQ(counts->corrected, 1);
+    EXPECT_EQ(counts->lost, 1) << "one outage";
+    EXPECT_THAT(cell->verdicts, ElementsAre(PartVerdict::failed, PartVerdict::failed, PartVerdict::corrected));
+    EXPECT_THAT(states, ElementsAre("start measuring", "run lost", "lost lost", "start measuring", "run lost",
+                                    "back waiting", "start measuring", "run waiting", "stopped stopped"));
+    EXPECT_THAT(texts, HasSubstr("sensor A is lost: sensor A: the connection was closed by the other side"));
+}
+
 TEST_F(Watching, StopsInTheMiddleOfAPartAndTellsTheRobot) {
     std::stop_source stop;
     options.cancel = stop.get_token();

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/features/registration/taught_stripe.h"
+#include "tests/projects/stripe_frame.h"
+
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -36,9 +39,12 @@ class Shown : public ProfileSource {
   public:
     void show(Profile profile) {
         auto frame = std::make_shared<Frame>();
+        frame->profile = std::move(profile);
+        show(std::move(frame));
+    }
+    void show(std::shared_ptr<Frame> frame) {
         frame->sequence = ++number_;
         frame->host_time_ns = static_cast<std::int64_t>(number_) * 1'000'000;
-        frame->profile = std::move(profile);
         const std::lock_guard lock(mutex_);
         newest_ = std::move(frame);
     }
@@ -122,6 +128,43 @@ TEST(LiveFeed, AnotherRecipeCountsFromTheNextProfile) {
     feed.set_recipe("A", {});
     sensor.show(stepped(0, 3));
     EXPECT_TRUE(within(5000ms, [&] { return !feed.latest("A")->feature; }));
+    feed.detach();
+}
+
+// The desk must not show the reflection where a run measures the stripe.
+TEST(LiveFeed, AReflectionIsToldByTheReferenceProfileAsInARun) {
+    Shown sensor;
+    LiveFeed feed;
+    LiveRecipe recipe;
+    recipe.model = stripe_camera();
+    recipe.feature.emplace();  // the contour's end
+    feed.set_recipe("A", recipe);
+    feed.attach({{"A", &sensor}});
+    const auto shown = [&](double end_mm, double height_mm, const StripeGhost& ghost) {
+        auto frame = std::make_shared<Frame>();
+        draw_stripe(*frame, *recipe.model, end_mm, height_mm, 0.1, ghost);
+        sensor.show(frame);
+        EXPECT_TRUE(within(5000ms, [&] {
+            const auto seen = feed.latest("A");
+            return seen && seen->frame == frame && seen->feature;
+        }));
+        return feed.latest("A");
+    };
+    const auto taught = shown(12.3, 5, {});
+    ASSERT_EQ(taught->feature->status, FeatureStatus::ok);
+    recipe.taught = taught->profile;
+    recipe.taught_at_mm = taught->feature->point_mm;
+    const auto fooled = shown(13.1, 5.4, {255, 45, 260});
+    EXPECT_GT(std::abs(fooled->feature->point_mm.y() - (5.4 + 0.1 * fooled->feature->point_mm.x())), 1)
+        << "nothing to be told";
+    feed.set_recipe("A", recipe);
+    const auto told = shown(13.1, 5.4, {255, 45, 260});
+    EXPECT_EQ(told->feature->status, FeatureStatus::ok);
+    EXPECT_NEAR(told->feature->point_mm.x(), 13.1, 0.25);
+    EXPECT_NEAR(told->feature->point_mm.y(), 5.4 + 0.1 * told->feature->point_mm.x(), 0.05);
+    const auto either = shown(12.3, 5, {255, 60, 0});
+    EXPECT_EQ(either->feature->status, FeatureStatus::ambiguous);
+    EXPECT_EQ(either->feature->message.english(), kTwoContours);
     feed.detach();
 }
 

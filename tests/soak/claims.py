@@ -38,7 +38,8 @@ def every_part(line, kills):
             unstored += started[name] - runs[name]
         elif runs[name] > started[name]:
             kills -= runs[name] - started[name]  # stored, and killed before the log had the line
-    if unstored or kills < 0:
+    # A program that is killed between the line of a start and the run in the file: the robot calls again.
+    if unstored > kills or kills < 0:
         yield f"{unstored} runs that were begun are not in the file, {kills} kills are left that could explain lines of the log"
     for name in set(runs) - {p.name for p in line.parts}:
         yield f"there is a run of part {name}, which nobody called"
@@ -96,7 +97,7 @@ def messages(line, listener, broker_kills, runner_kills):
             results[message["run"]].append(message)
         elif topic == TOPIC.format("STATE") and message.get("online") is False:
             wills += 1
-    lost = 0
+    lost = unannounced = 0
     parts = {p.name: p for p in line.parts}
     for event in line.runner.events:
         if event["event"] != "run":
@@ -108,8 +109,13 @@ def messages(line, listener, broker_kills, runner_kills):
         part = parts[event["part"]]
         if any(m["part"] != part.name for m in got):
             yield f"the result of run {event['run']} names part {got[0]['part']} instead of {part.name}"
-        if part.announced and part.calls == 1 and any(m["paint"] != part.paint for m in got):
+        if part.announced and all(m["paint"] == 0 for m in got):
+            unannounced += 1
+        elif part.announced and part.calls == 1 and any(m["paint"] != part.paint for m in got):
             yield f"part {part.name} was announced with paint {part.paint}, its result says {got[0]['paint']}"
+    if unannounced > broker_kills + runner_kills:
+        yield (f"{unannounced} announcements were not taken, with {broker_kills} kills of the broker and {runner_kills} of "
+               f"the runner")
     if lost > broker_kills + runner_kills:
         yield f"{lost} results did not arrive, with {broker_kills} kills of the broker and {runner_kills} of the runner"
     if wills < runner_kills:

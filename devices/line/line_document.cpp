@@ -51,7 +51,8 @@ QoS 1, JSON, topics after Sparkplug's pattern. GROUP and NODE are settings; '/',
 
 A command's "id" is another one each time: the same one again is a repetition and does nothing. Kept (retained) commands are not
 obeyed. "start": true calls for a part where the setting "start" is "line", false gives it up; without "start" the part is
-announced for the robot's next call, and for that one alone. Results wait while the broker is away, as many as the setting
+announced for the robot's next call, and for that one alone. Once the robot has called a part by the name that the line had
+announced, another name is another part: what was announced is not taken for it. Results wait while the broker is away, as many as the setting
 "queue" says, and one may come twice; "run" tells.
 )";
 

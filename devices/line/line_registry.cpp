@@ -35,7 +35,8 @@ const std::vector<LineCode>& line_results() {
     static const std::vector<LineCode> codes = {
         {0, "none", "there was no part yet"},
         {1, "corrected", "pushed; the application runs in the corrected frames"},
-        {2, "measured", "a dry run; every region is within its limits, nothing was written"},
+        {2, "measured",
+         "a dry run, or the drift watch's reference; every region is within its limits, nothing was written"},
         {3, "refused", "the gate refused a region, or it could not be solved; the frames are as they were"},
         {4, "not_taken", "pushed, but the application did not begin; the old frames stand again"},
         {5, "alarm", "a push went wrong; look at the station before the robot moves"},

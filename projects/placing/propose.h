@@ -78,9 +78,9 @@ Expected<Proposal> propose_spots(const Project& project, const Drawing& drawing,
 std::vector<Eigen::Vector3d> places_of(const Proposal& proposal);
 
 // The proposal with one spot at another place (an index of places_of()), turned as it was where that sees a feature there,
-// else as leaves the bead best known. Spots keep their names and stand in the order of the new way; set, forecast and along_mm are new, the bounds
-// are those of all sets of as many and stay. For ghosts that are dragged: some milliseconds. Error (input): no such
-// spot or place, another spot stands there.
+// else as leaves the bead best known. Spots keep their names and stand in the order of the new way; set, forecast and
+// along_mm are new, the bounds are those of all sets of as many and stay. For ghosts that are dragged: some milliseconds.
+// Error (input): no such spot or place, another spot stands there.
 Expected<Proposal> move_proposed(const Proposal& proposal, const std::string& spot_id, std::size_t place);
 
 // The same measure of a region's spots as they are: 3 sigma across the bead at its worst point, and with the worst spot

@@ -54,9 +54,9 @@ struct Station::Impl {
         RunRecord run{};
         std::map<std::string, SpotMeasurer> measurers{};
         std::map<std::string, TriggeredFrames> frames{};  // by sensor
-        std::vector<std::string> started_robots{};        // and the one that called: they wait for the verdict
-        StartedSensors started_sensors{};                 // stopped when the robots have it
-        std::map<std::string, SensorLight> light{};       // by sensor; set back before they stop
+        std::vector<std::string> started_robots{};   // and the one that called: they wait for the verdict
+        StartedSensors started_sensors{};            // stopped when the robots have it
+        std::map<std::string, SensorLight> light{};  // by sensor; set back before they stop
         std::int64_t part_since_ns = 0;
         int done = 0, total = 0;
         StoredMeasurements stored{};

@@ -36,11 +36,11 @@ struct RunProgress {
 };
 
 struct RunOptions {
-    std::string part_id;       // empty = "run <number>"
-    std::string part_type;     // id or number of its type, where the project has types (called_type())
-    std::string paint;         // as SpotLight::paints names it; empty: not said
-    // The robot that called for the part and waits for what becomes of it: it is told even where measuring never began, by a
-    // sensor that cannot be started, say.
+    std::string part_id;    // empty = "run <number>"
+    std::string part_type;  // id or number of its type, where the project has types (called_type())
+    std::string paint;      // as SpotLight::paints names it; empty: not said
+    // The robot that called for the part and waits for what becomes of it: it is told even where measuring never
+    // began (a sensor cannot be started), and where it has no spot of its own. Empty: those that measured are told.
     std::string caller = {};
     bool push = false;         // false = dry run: everything but writing
     bool keep_images = false;  // raw images with the run, beside candidates and profiles

@@ -73,7 +73,7 @@ class Watch {
                 SEAM_TRY(auto connected, connect());
                 if (!connected) continue;
             }
-            if (sensor_dead_ && std::chrono::steady_clock::now() >= look_again_) sensor_dead_ = !sensors_answer();
+            if (dead_ && std::chrono::steady_clock::now() >= look_again_) dead_ = dead_sensor();
             SEAM_TRY(auto start, next_start());
             if (!start.has_value()) continue;
             if (const auto part = named(*start)) SEAM_OK(measure(*part));
@@ -113,10 +113,8 @@ class Watch {
 
     // An outage is told and recorded once, however many attempts it lasts.
     void lost(const Text& subject, const Error& error) {
-        if (state_ != WatchState::lost) {
-            state_ = WatchState::lost;
-            tell_lost(subject, error);
-        }
+        state_ = WatchState::lost;
+        if (!std::exchange(away_, true)) tell_lost(subject, error);
         pause();
     }
 
@@ -130,25 +128,25 @@ class Watch {
              Text("{} is lost: {}", subject, error.text()));
     }
 
-    // Whether every sensor can be started, as the next part would; the first one that cannot is kept in dead_.
-    bool sensors_answer() {
+    // The first sensor that cannot be started, as the next part would start it, and what it says.
+    std::optional<std::pair<Text, Error>> dead_sensor() {
         for (const SensorSetup& setup : station_.project().sensors) {
             ProfileSource* sensor = station_.sensor(setup.id);
             if (!sensor) continue;
             auto started = sensor->start();
             sensor->stop();
             if (started) continue;
-            dead_.emplace(Text("sensor {}", setup.id), started.error());
             look_again_ = std::chrono::steady_clock::now() + retry_;
             retry_ = std::min(2 * retry_, options_.retry_longest);
-            return false;
+            return std::pair(Text("sensor {}", setup.id), started.error());
         }
-        return true;
+        return std::nullopt;
     }
 
     // All answer. A call is heard while a sensor is dead, too: the robot is told at once that its part failed.
     void ready() {
-        if (sensor_dead_) return;
+        away_ = false;
+        if (dead_) return;
         retry_ = options_.retry_first;
         if (state_ == WatchState::lost) {
             (void)station_.file().append_event(
@@ -343,8 +341,9 @@ class Watch {
          : failed                ? counts_.failed
                                  : counts_.refused) += 1;
         // No wait for a start finds out that a sensor is dead.
-        const bool was_dead = std::exchange(sensor_dead_, status == RunStatus::device && !sensors_answer());
-        state_ = was_dead || sensor_dead_ ? WatchState::lost : WatchState::waiting;
+        const bool was_dead = dead_.has_value();
+        dead_ = status == RunStatus::device ? dead_sensor() : std::nullopt;
+        state_ = was_dead || dead_ ? WatchState::lost : WatchState::waiting;
         const auto done = std::make_shared<const RunRecord>(std::move(record));
         const DriftStanding& drift = station_.drift();
         Text said("{}: {}", named_part({done->part_id, done->type_id}), done->message);
@@ -354,7 +353,7 @@ class Watch {
              : status == RunStatus::ok                             ? WatchLevel::info
                                                                    : WatchLevel::warning,
              watched::RunDone{done, took.count(), drift}, std::move(said));
-        if (sensor_dead_ && !was_dead) tell_lost(dead_->first, dead_->second);
+        if (dead_ && !was_dead) tell_lost(dead_->first, dead_->second);
         return forget_old_runs();
     }
 
@@ -401,8 +400,8 @@ class Watch {
     bool calls_heard_ = false;                                   // line_over() of this part
     std::optional<std::pair<std::string, StartSignal>> called_;  // by which robot, while a part was released
     std::chrono::milliseconds retry_;
-    bool sensor_dead_ = false;                    // since a run that a device ended
-    std::optional<std::pair<Text, Error>> dead_;  // which one, and what it said
+    bool away_ = false;                           // the station or a robot, and that was told
+    std::optional<std::pair<Text, Error>> dead_;  // a sensor, since a run that it ended; told
     std::chrono::steady_clock::time_point look_again_{};
 };
 

@@ -357,7 +357,7 @@ void PlaceDialog::show_proposal(Expected<Proposal> proposal) {
 
 bool PlaceDialog::move_to(const std::string& spot_id, std::size_t place) {
     auto moved = move_proposed(*proposal_, spot_id, place);
-    if (!moved) return false;  // another one stands there
+    if (!moved) return false;
     show_proposal(std::move(*moved));
     const auto& spots = proposal_->spots;
     const auto at =

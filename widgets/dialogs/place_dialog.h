@@ -1,8 +1,8 @@
 #pragma once
 // Spots from the drawing (projects/placing): a drawing is read, the edge that the bead follows is picked in the scene or
-// from the list, spots along it are proposed with their forecast, moved along it if so wished (by dragging their ghosts or by
-// steps; the forecast follows), and taken into the project as one edit: from the drawing, not confirmed. Nothing moves a robot. Reading and proposing run beside the window and can be cancelled; a project that
-// is left closes it.
+// from the list, spots along it are proposed with their forecast, moved along it if so wished (by dragging their ghosts
+// or by steps; the forecast follows), and taken into the project as one edit: from the drawing, not confirmed. Nothing
+// moves a robot. Reading and proposing run beside the window and can be cancelled; a project that is left closes it.
 
 #include <QCheckBox>
 #include <QComboBox>
@@ -31,10 +31,10 @@ class PlaceDialog : public QDialog {
     void take_file(const QString& file);  // begins to read it
     void choose_edge(const QString& id);
     void propose();
-    void drag(const QString& spot_id,
-              const QPointF& at);  // to the place that is nearest to the pointer in the scene
-    void step(int way);            // the chosen spot to the next free place, on (1) or back (-1)
-    void take();                   // what was proposed
+    // To the place that is nearest to the pointer (SceneView::proposed_dragged).
+    void drag(const QString& spot_id, const QPointF& at);
+    void step(int way);  // the chosen spot to the next free place, on (1) or back (-1)
+    void take();         // what was proposed
     bool working() const { return working_; }
 
   private:
@@ -50,7 +50,7 @@ class PlaceDialog : public QDialog {
     void show_drawing(Expected<ReadDrawing> read);
     void show_edge();
     void show_proposal(Expected<Proposal> proposal);
-    bool move_to(const std::string& spot_id, std::size_t place);
+    bool move_to(const std::string& spot_id, std::size_t place);  // false: another one stands there
     void forget_proposal();
     void state();
 

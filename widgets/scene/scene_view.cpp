@@ -373,8 +373,8 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
         impl_->canvas->on_hover = [this](const QPointF& at) {
             if (impl_->edges.empty()) return;
             if (!impl_->canvas->lasso)
-                impl_->canvas->setCursor(impl_->spot_at(impl_->proposed, at) ? Qt::OpenHandCursor
-                                                                             : Qt::ArrowCursor);
+                impl_->spot_at(impl_->proposed, at) ? impl_->canvas->setCursor(Qt::OpenHandCursor)
+                                                    : impl_->canvas->unsetCursor();
             const SceneEdge* edge = impl_->edge_at(at);
             const std::string id = edge ? edge->id : std::string();
             if (id == impl_->lit_edge) return;
@@ -498,6 +498,7 @@ void SceneView::choose_edges(const std::vector<std::string>& ids) {
 
 void SceneView::set_proposed(const std::vector<SceneSpot>& spots) {
     impl_->proposed = spots;
+    if (spots.empty() && impl_->canvas && !impl_->canvas->lasso) impl_->canvas->unsetCursor();
     impl_->redraw(Layer::edges);
 }
 

@@ -1,5 +1,7 @@
 #include "widgets/worker/live_feed.h"
 
+#include <utility>
+
 #include "core/features/feature.h"
 #include "core/features/kinds/feature_registry.h"
 #include "core/features/registration/taught_stripe.h"
@@ -59,6 +61,18 @@ Text convert(const Frame& frame, const LiveRecipe& recipe, std::optional<TaughtS
 }
 
 }  // namespace
+
+// Takes milliseconds; whoever asks for the newest does not wait for it.
+void LiveFeed::take_recipe(Lane& lane, const LiveRecipe& recipe) {
+    lane.search_due = {};
+    lane.feature.reset();
+    lane.finder.reset();
+    lane.taught.reset();
+    if (!recipe.feature) return;
+    if (auto made = make_feature_finder(*recipe.feature)) lane.finder = std::move(*made);
+    if (auto made = TaughtStripe::make(recipe.taught, recipe.taught_at_mm, search_window(*recipe.feature)))
+        lane.taught.emplace(std::move(*made));
+}
 
 void LiveFeed::search(Lane& lane, const Profile& profile) {
     const auto start = Clock::now();
@@ -189,24 +203,13 @@ void LiveFeed::work(const std::stop_token& stop) {
             lane->last_sequence = frame->sequence;
             lane->last_time_ns = frame->host_time_ns;
             std::shared_ptr<const LiveRecipe> recipe;
+            bool changed = false;
             {
                 const std::lock_guard lock(mutex_);
                 recipe = lane->recipe;
-                if (lane->recipe_changed) {
-                    lane->recipe_changed = false;
-                    lane->search_due = {};
-                    lane->feature.reset();
-                    lane->finder.reset();
-                    lane->taught.reset();
-                    if (recipe->feature)
-                        if (auto made = make_feature_finder(*recipe->feature))
-                            lane->finder = std::move(*made);
-                    if (recipe->feature && recipe->taught.size() > 0)
-                        if (auto made = TaughtStripe::make(recipe->taught, recipe->taught_at_mm,
-                                                           search_window(*recipe->feature)))
-                            lane->taught.emplace(std::move(*made));
-                }
+                changed = std::exchange(lane->recipe_changed, false);
             }
+            if (changed) take_recipe(*lane, *recipe);
             auto snapshot = std::make_shared<LiveSnapshot>();
             snapshot->sensor_id = id;
             snapshot->number = ++lane->number;

@@ -80,6 +80,7 @@ class LiveFeed : public QObject {
     struct Lane;
     void work(const std::stop_token& stop);
     static void search(Lane& lane, const Profile& profile);
+    static void take_recipe(Lane& lane, const LiveRecipe& recipe);
     mutable std::mutex mutex_;  // sources, recipes, snapshots
     std::mutex use_mutex_;      // held while a source is asked
     std::map<std::string, std::shared_ptr<Lane>> lanes_;

@@ -130,6 +130,17 @@ PlacedSet by_hand(const std::vector<std::string>& ids, const ProposeOptions& o) 
     return placing->judge(all);
 }
 
+// The proposed spots in a project of their own.
+std::pair<Project, Region> taken_of(const Proposal& proposal) {
+    std::pair<Project, Region> taken{world().project, {}};
+    auto& [project, region] = taken;
+    region.id = "taken";
+    project.spots.clear();
+    for (const ProposedSpot& p : proposal.spots)
+        project.spots.push_back(p.spot), region.spot_ids.push_back(p.spot.id);
+    return taken;
+}
+
 TEST(Propose, IsNeverWorseThanTheSpotsMadeByHandOnAnySide) {
     ASSERT_EQ(world().edges.size(), 4u);
     for (const DoorRegion& region : default_door_regions()) {
@@ -167,12 +178,7 @@ TEST(Propose, StaysNearTheBeadWhereItIsToldTo) {
         EXPECT_EQ(p.spot.reference_state, ReferenceState::from_drawing);
         EXPECT_EQ(p.spot.drawn->edge, o.edge);
     }
-    Project taken = world().project;
-    Region region;
-    region.id = "taken";
-    taken.spots.clear();
-    for (const ProposedSpot& p : proposal->spots)
-        taken.spots.push_back(p.spot), region.spot_ids.push_back(p.spot.id);
+    const auto [taken, region] = taken_of(*proposal);
     const auto judged = judge_spots(taken, region, proposal->bead);
     ASSERT_TRUE(judged) << judged.error().sentence();
     EXPECT_NEAR(judged->three_sigma_mm, proposal->set.three_sigma_mm, 1e-6);
@@ -210,12 +216,7 @@ TEST(Propose, ASpotIsMovedAndTheForecastFollows) {
         EXPECT_EQ(spot(*moved).place, place);
         EXPECT_LT((places[place] - spot(*moved).point_mm).norm(), 5);
         // The same numbers as the spots have in a project of their own.
-        Project taken = world().project;
-        Region region;
-        region.id = "taken";
-        taken.spots.clear();
-        for (const ProposedSpot& p : moved->spots)
-            taken.spots.push_back(p.spot), region.spot_ids.push_back(p.spot.id);
+        const auto [taken, region] = taken_of(*moved);
         const auto judged = judge_spots(taken, region, proposal->bead);
         ASSERT_TRUE(judged) << judged.error().sentence();
         EXPECT_NEAR(judged->three_sigma_mm, moved->set.three_sigma_mm, 1e-6);

@@ -181,10 +181,31 @@ TEST_F(Watching, IsNotReadyWhileASensorIsDead) {
     EXPECT_EQ(counts->failed, 2);
     EXPECT_EQ(counts->corrected, 1);
     EXPECT_EQ(counts->lost, 1) << "one outage";
-    EXPECT_THAT(cell->verdicts, ElementsAre(PartVerdict::failed, PartVerdict::failed, PartVerdict::corrected));
+    EXPECT_THAT(cell->verdicts,
+                ElementsAre(PartVerdict::failed, PartVerdict::failed, PartVerdict::corrected));
     EXPECT_THAT(states, ElementsAre("start measuring", "run lost", "lost lost", "start measuring", "run lost",
                                     "back waiting", "start measuring", "run waiting", "stopped stopped"));
     EXPECT_THAT(texts, HasSubstr("sensor A is lost: sensor A: the connection was closed by the other side"));
+}
+
+TEST_F(Watching, ARobotThatGoesWhileASensorIsDeadIsToldTooAndAllAreBackAtOnce) {
+    cell->dead_sensor = true;
+    part("CAR-1");
+    for (int i = 0; i < 2; ++i)
+        cell->starts.push_back(device_error(ErrorCode::disconnected, kDisconnected, "127.0.0.1:7000"));
+    options.tell = [&, tell = options.tell](const WatchEvent& e) {
+        tell(e);
+        if (const auto* lost = std::get_if<watched::Lost>(&e.happening); lost && lost->device == "robot R1")
+            cell->dead_sensor = false;
+        if (std::holds_alternative<watched::Back>(e.happening)) part("CAR-2");
+    };
+    options.parts = 2;
+    auto counts = watch(*station, options);
+    ASSERT_TRUE(counts);
+    EXPECT_EQ(counts->lost, 2);
+    EXPECT_EQ(counts->corrected, 1);
+    EXPECT_THAT(told, ElementsAre("info start", "alarm run", "alarm lost", "alarm lost", "info back",
+                                  "info start", "info run", "info stopped"));
 }
 
 TEST_F(Watching, StopsInTheMiddleOfAPartAndTellsTheRobot) {

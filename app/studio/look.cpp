@@ -13,10 +13,15 @@ namespace seamwright {
 namespace {
 
 // Fusion, with the steps of a number side by side and as high as the field: its own are too small for a
-// glove; and with boxes to tick in the colour of text: its own take the window's and are lost on a dark one.
+// glove; with boxes to tick in the colour of text: its own take the window's and are lost on a dark one; and
+// with tabs so narrow that the names of all views stand side by side in the smallest window.
 class DeskStyle final : public QProxyStyle {
   public:
     DeskStyle() : QProxyStyle(QStyleFactory::create("Fusion")) {}
+
+    int pixelMetric(PixelMetric metric, const QStyleOption* option, const QWidget* widget) const override {
+        return metric == PM_TabBarTabHSpace ? kTabSpace_px : QProxyStyle::pixelMetric(metric, option, widget);
+    }
 
     QRect subControlRect(ComplexControl control, const QStyleOptionComplex* option, SubControl part,
                          const QWidget* widget) const override {
@@ -86,7 +91,7 @@ class DeskStyle final : public QProxyStyle {
     }
 
   private:
-    static constexpr int kStep_px = 26;
+    static constexpr int kStep_px = 26, kTabSpace_px = 16;
 
     void draw_step(const QStyleOptionSpinBox& spin, SubControl part, QAbstractSpinBox::StepEnabledFlag step,
                    QPainter& painter, const QWidget* widget) const {

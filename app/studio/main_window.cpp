@@ -45,10 +45,13 @@
 namespace seamwright {
 namespace {
 
-constexpr int kPageWidth = 440;
-constexpr QSize kFirstSize(1440, 900), kSmallestSize(1280, 768);  // logical pixels
+constexpr int kPageWidth = 440, kPageRoom_px = 120, kPageEdge_px = 12;
+constexpr QSize kFirstSize(1440, 900), kSmallestSize(1180, 660);  // logical pixels
+constexpr int kWideRail_px = 1280;  // of the window, in which the steps have words
 // What the live profile keeps of the window's height, whatever stands below it.
 constexpr double kProfileShare = 0.35;
+constexpr int kLowerView_px = 160;     // of a view below it, at least
+constexpr int kReadablePlot_px = 300;  // in which an axis' label has room
 constexpr int kLayoutVersion = 2;
 constexpr int kDevices_ms = 250;
 constexpr std::chrono::milliseconds kRobotStale{3000};
@@ -85,6 +88,24 @@ class DockTitle : public QWidget {
   private:
     std::function<void()> full_;
 };
+
+// Docks behind others in a tab group lie outside of the window, visible to Qt.
+bool stands_within(const QMainWindow& window, const QDockWidget& dock) {
+    return dock.window() == &window && dock.isVisible() &&
+           window.rect().intersects(QRect(dock.mapTo(&window, QPoint()), dock.size()));
+}
+
+// What does not fit below the live profile of a small window is scrolled to.
+QScrollArea* scrolled(QWidget* view) {
+    auto* area = new QScrollArea;
+    area->setWidget(view);
+    area->setWidgetResizable(true);
+    area->setFrameShape(QFrame::NoFrame);
+    area->setFocusPolicy(Qt::NoFocus);
+    area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    area->setMinimumHeight(kLowerView_px);
+    return area;
+}
 
 }  // namespace
 
@@ -180,6 +201,8 @@ void MainWindow::make_docks() {
     auto* chart_box = new QVBoxLayout(charts);
     chart_box->setContentsMargins(0, 0, 0, 0);
     charts->setFocusProxy(views_.trend);
+    charts->setMinimumHeight(kReadablePlot_px);
+    views_.residuals->setMinimumHeight(kReadablePlot_px);
     chart_box->addWidget(views_.trend, 3);
     chart_box->addWidget(views_.histogram, 2);
 
@@ -187,11 +210,11 @@ void MainWindow::make_docks() {
     QDockWidget* camera = add_dock("dock_camera", tr("Camera image"), views_.camera);
     QDockWidget* scene = add_dock("dock_scene", tr("Part in 3D"), views_.scene);
     QDockWidget* align = add_dock("dock_align", tr("Frozen contour"), views_.align);
-    QDockWidget* residuals = add_dock("dock_residuals", tr("Residuals"), views_.residuals);
-    QDockWidget* trend = add_dock("dock_charts", tr("Charts"), charts);
+    QDockWidget* residuals = add_dock("dock_residuals", tr("Residuals"), scrolled(views_.residuals));
+    QDockWidget* trend = add_dock("dock_charts", tr("Charts"), scrolled(charts));
     QDockWidget* events = add_dock("dock_events", tr("Events"), new EventList(desk_));
     views_.jog = new JogPanel(desk_);
-    QDockWidget* jog = add_dock("dock_jog", tr("Jog"), views_.jog);
+    QDockWidget* jog = add_dock("dock_jog", tr("Jog"), scrolled(views_.jog));
     addDockWidget(Qt::RightDockWidgetArea, profile);
     tabifyDockWidget(profile, camera);
     addDockWidget(Qt::RightDockWidgetArea, scene);
@@ -210,7 +233,6 @@ void MainWindow::make_docks() {
 
 void MainWindow::make_central() {
     auto* central = new QWidget;
-    central->setMaximumWidth(164 + kPageWidth + 120);
     auto* columns = new QHBoxLayout;
     columns->setContentsMargins(0, 0, 0, 0);
     columns->setSpacing(0);
@@ -343,17 +365,27 @@ void MainWindow::refresh_title() {
 
 void MainWindow::resizeEvent(QResizeEvent* event) {
     QMainWindow::resizeEvent(event);
+    const bool narrow = width() < kWideRail_px;
+    rail_->set_narrow(narrow);
+    centralWidget()->setMaximumWidth(rail_->width() + kPageWidth + (narrow ? kPageEdge_px : kPageRoom_px));
     views_.profile->setMinimumHeight(static_cast<int>(kProfileShare * height()));
+    // The new height was shared out while the profile still asked for its part of the old one.
+    QTimer::singleShot(0, this, [this] {
+        const auto crushed = [this](const QDockWidget* d) {
+            return stands_within(*this, *d) && d->height() < d->minimumSizeHint().height();
+        };
+        if (std::any_of(docks_.begin(), docks_.end(), crushed))
+            resizeDocks({docks_[0], docks_[2]}, {views_.profile->minimumHeight(), height()}, Qt::Vertical);
+    });
     QTimer::singleShot(0, this, &MainWindow::refresh_next);  // when its button has the new width
 }
 
-// Docks behind others in a tab group lie outside of the window, visible to Qt: the focus passes them by.
+// The focus passes by what stands behind other docks.
 bool MainWindow::focusNextPrevChild(bool next) {
     const auto unseen = [this](const QWidget* w) {
         return w && w->window() == this &&
                std::any_of(docks_.begin(), docks_.end(), [&](const QDockWidget* d) {
-                   return d->isAncestorOf(w) &&
-                          !rect().intersects(QRect(d->mapTo(this, QPoint()), d->size()));
+                   return d->isAncestorOf(w) && !stands_within(*this, *d);
                });
     };
     const QWidget* first = nullptr;
@@ -386,6 +418,7 @@ void MainWindow::refresh_next() {
         if (s.status == StepStatus::next) {
             const QString text = tr("Next: %1 - %2").arg(step_name(s.step), s.why);
             next_->setText(wrapped(text, next_->fontMetrics(), next_->width() - kNextMargin_px));
+            next_->setMinimumHeight(std::max(style::kTargetPx, next_->sizeHint().height()));  // all its lines
             next_->setAccessibleName(text);
             next_->setToolTip(text);
         }

@@ -6,6 +6,11 @@
 #include "widgets/style.h"
 
 namespace seamwright {
+namespace {
+
+constexpr int kWide_px = 164, kNarrow_px = 72;
+
+}  // namespace
 
 QString step_icon(Step step) {
     static const std::array<QString, kSteps.size()> names{"sensor",  "calibrate", "target", "align",
@@ -17,21 +22,32 @@ StepRail::StepRail(Desk& desk) : desk_(desk) {
     auto* box = new QVBoxLayout(this);
     box->setContentsMargins(4, 8, 4, 4);
     box->setSpacing(2);
-    setFixedWidth(164);
     for (const Step step : kSteps) {
         const auto i = static_cast<std::size_t>(step);
-        buttons_[i] = make_button("rail", step_icon(step), tr("%1 %2").arg(i + 1).arg(step_name(step)),
-                                  step_name(step), [this, step] { emit step_chosen(step); });
+        buttons_[i] = make_button("rail", step_icon(step), QString(), step_name(step),
+                                  [this, step] { emit step_chosen(step); });
+        buttons_[i]->setAccessibleName(step_name(step));
         buttons_[i]->setCheckable(true);
         buttons_[i]->setAutoExclusive(true);
         buttons_[i]->setMinimumHeight(38);
         states_[i] = new QLabel;
-        states_[i]->setContentsMargins(34, 0, 0, 6);
         box->addWidget(buttons_[i]);
         box->addWidget(states_[i]);
     }
     box->addStretch(1);
     connect(&desk_, &Desk::checklist_changed, this, &StepRail::refresh);
+    set_narrow(false);
+}
+
+void StepRail::set_narrow(bool narrow) {
+    if (narrow == narrow_) return;
+    narrow_ = narrow;
+    setFixedWidth(narrow ? kNarrow_px : kWide_px);
+    for (const Step step : kSteps) {
+        const auto i = static_cast<std::size_t>(step);
+        buttons_[i]->setText(narrow ? QString::number(i + 1) : tr("%1 %2").arg(i + 1).arg(step_name(step)));
+        states_[i]->setContentsMargins(narrow ? 22 : 34, 0, 0, 6);
+    }
     refresh();
 }
 
@@ -43,10 +59,13 @@ void StepRail::refresh() {
     for (const StepState& s : desk_.steps()) {
         const auto i = static_cast<std::size_t>(s.step);
         const bool stale = s.stale && s.status == StepStatus::next;
-        const QString sign = s.status == StepStatus::done   ? QStringLiteral("✓ ")
-                             : s.status == StepStatus::next ? QStringLiteral("➜ ")
-                                                            : QString();
-        set_verdict(*states_[i], sign + (stale ? tr("next, stale") : status_word(s.status)),
+        const QString sign = s.status == StepStatus::done    ? QStringLiteral("✓")
+                             : s.status == StepStatus::next  ? QStringLiteral("➜")
+                             : s.status == StepStatus::stale ? QStringLiteral("!")
+                                                             : QString();
+        const QString word = stale ? tr("next, stale") : status_word(s.status);
+        states_[i]->setAccessibleName(QStringLiteral("%1: %2").arg(step_name(s.step), word));
+        set_verdict(*states_[i], narrow_ ? sign : (sign + ' ' + word).trimmed(),
                     s.status == StepStatus::done             ? Tone::good
                     : s.status == StepStatus::stale || stale ? Tone::attention
                                                              : Tone::plain);

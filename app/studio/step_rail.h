@@ -15,6 +15,8 @@ class StepRail : public QWidget {
   public:
     explicit StepRail(Desk& desk);
     void show_step(Step step);
+    // Of a small window: numbers and signs alone, the words in the tips; the views have the room.
+    void set_narrow(bool narrow);
 
   signals:
     void step_chosen(seamwright::Step step);
@@ -22,6 +24,7 @@ class StepRail : public QWidget {
   private:
     void refresh();
     Desk& desk_;
+    bool narrow_ = true;
     std::array<QPushButton*, kSteps.size()> buttons_{};
     std::array<QLabel*, kSteps.size()> states_{};
 };

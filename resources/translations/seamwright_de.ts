@@ -3874,8 +3874,8 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <translation>Was ein Druck auf eine Taste tut</translation>
     </message>
     <message>
-        <source>%1 mm, %2 degrees</source>
-        <translation>%1 mm, %2 Grad</translation>
+        <source>%1 mm, %2°</source>
+        <translation>%1 mm, %2°</translation>
     </message>
     <message>
         <source>Step</source>

@@ -19,12 +19,15 @@
 namespace seamwright {
 
 namespace {
-constexpr int kSide_px = 300;  // verdict and numbers
-}
+constexpr int kSide_px = 300;       // verdict and numbers
+constexpr int kBothPlots_px = 340;  // of height, below which the offsets alone are drawn
+constexpr int kStack_px = 90;       // of the profiles of the pass, at least
+}  // namespace
 
 struct AlignView::Impl {
     OffsetCanvas* offsets = nullptr;
     StackCanvas* stack = nullptr;
+    QWidget* lower = nullptr;  // with the stack
     CureArrow* arrow = nullptr;
     QLabel *verdict = nullptr, *reason = nullptr;
     QLabel *yaw = nullptr, *pitch = nullptr, *roll = nullptr, *radius = nullptr, *error = nullptr,
@@ -76,7 +79,7 @@ AlignView::AlignView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
     setFocusProxy(impl_->offsets);
     impl_->offsets->setToolTip(
         tr("Drag either blue line, or press Left and Right: how far the trigger may miss"));
-    auto* lower = new QWidget(split);
+    auto* lower = impl_->lower = new QWidget(split);
     auto* lower_column = new QVBoxLayout(lower);
     lower_column->setContentsMargins(0, 0, 0, 0);
     lower_column->setSpacing(0);
@@ -93,6 +96,7 @@ AlignView::AlignView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
     connect(impl_->as_overlay, &QToolButton::clicked, this, [this] { set_stack(Stack::overlay); });
     lower_column->addWidget(head);
     impl_->stack = new StackCanvas(lower);
+    impl_->stack->setMinimumHeight(kStack_px);
     impl_->stack->setToolTip(
         tr("Every profile of the pass over the travel; the buttons above change the picture"));
     lower_column->addWidget(impl_->stack, 1);
@@ -266,6 +270,11 @@ double AlignView::jitter_mm() const {
 }
 QString AlignView::verdict() const {
     return impl_->verdict->text();
+}
+
+void AlignView::resizeEvent(QResizeEvent* event) {
+    QWidget::resizeEvent(event);
+    impl_->lower->setVisible(height() >= kBothPlots_px);
 }
 
 void AlignView::changeEvent(QEvent* event) {

@@ -36,7 +36,7 @@ class AlignView : public QWidget {
     QString verdict() const;  // the word on the screen: "FROZEN", "DRIFTING", ...
 
     QSize sizeHint() const override { return {1000, 620}; }
-    QSize minimumSizeHint() const override { return {560, 240}; }
+    QSize minimumSizeHint() const override { return {460, 220}; }
 
   signals:
     // The jitter window was dragged: half width, mm. The owner judges again (check_alignment is fast) and
@@ -46,6 +46,8 @@ class AlignView : public QWidget {
 
   protected:
     void changeEvent(QEvent* event) override;
+    void resizeEvent(
+        QResizeEvent* event) override;  // the profiles of the pass where there is room for both plots
 
   private:
     struct Impl;

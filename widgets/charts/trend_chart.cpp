@@ -158,6 +158,7 @@ TrendChart::TrendChart(QWidget* parent) : QWidget(parent), impl_(std::make_uniqu
     impl_->title = new QLabel(this);
     impl_->title->setAccessibleName(tr("Chart title"));
     impl_->title->setContentsMargins(8, 4, 4, 0);
+    impl_->title->setWordWrap(true);
     impl_->canvas = new PartsCanvas(this);
     impl_->canvas->labels = &impl_->labels;
     impl_->canvas->setAccessibleName(tr("History chart"));

@@ -31,6 +31,7 @@ struct JogStep {
 };
 constexpr std::array<JogStep, 6> kJogSteps{{{0.1, 0.1}, {0.5, 0.1}, {1, 0.5}, {5, 1}, {10, 2}, {50, 10}}};
 constexpr int kFirstStep = 2;
+constexpr int kTwoColumns_px = 600;  // of the panel: names, and words of a choice, side by side
 
 }  // namespace
 
@@ -66,12 +67,17 @@ JogPanel::JogPanel(Desk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
     refresh();
 }
 
+void JogPanel::resizeEvent(QResizeEvent* event) {
+    columns_->setDirection(width() < kTwoColumns_px ? QBoxLayout::TopToBottom : QBoxLayout::LeftToRight);
+    QWidget::resizeEvent(event);
+}
+
 void JogPanel::make_choices() {
-    auto* columns = new QHBoxLayout;
+    columns_ = new QHBoxLayout;
     auto *left = new QVBoxLayout, *right = new QVBoxLayout;
-    columns->addLayout(left, 1);
-    columns->addLayout(right, 1);
-    static_cast<QVBoxLayout&>(*layout()).addLayout(columns);
+    columns_->addLayout(left, 1);
+    columns_->addLayout(right, 1);
+    static_cast<QVBoxLayout&>(*layout()).addLayout(columns_);
     robot_ = new QComboBox;
     robot_->setObjectName("jog_robot");
     add_field(*left, tr("Robot"), robot_, tr("The robot that is moved"));
@@ -95,7 +101,7 @@ void JogPanel::make_choices() {
     step_ = new QComboBox;
     step_->setObjectName("jog_step");
     for (const JogStep& s : kJogSteps)
-        step_->addItem(tr("%1 mm, %2 degrees").arg(locale().toString(s.mm), locale().toString(s.deg)));
+        step_->addItem(tr("%1 mm, %2°").arg(locale().toString(s.mm), locale().toString(s.deg)));
     step_->setCurrentIndex(kFirstStep);
     add_field(*right, tr("Step"), step_, tr("How far one press moves and turns"));
     speed_ = new QDoubleSpinBox;

@@ -4,6 +4,7 @@
 // robot that is no simulation moves only after a person has said that somebody stands beside it, which is asked
 // again after every connection.
 
+#include <QBoxLayout>
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
@@ -28,6 +29,7 @@ class JogPanel : public QWidget {
 
   protected:
     void hideEvent(QHideEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;  // choices side by side where there is room
     void keyPressEvent(QKeyEvent* event) override;
     bool event(QEvent* event) override;
     bool eventFilter(QObject* watched, QEvent* event) override;  // of the keys
@@ -57,6 +59,7 @@ class JogPanel : public QWidget {
     QDoubleSpinBox* speed_;
     QCheckBox* consent_;
     QLabel *place_, *message_;
+    QBoxLayout* columns_ = nullptr;
     std::array<Key, 12> keys_;
     const Key* pressed_ = nullptr;
     QTimer timer_;

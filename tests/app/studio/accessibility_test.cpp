@@ -95,6 +95,7 @@ class Accessibility : public testing::Test {
         ASSERT_TRUE(me.wait([&] { return studio->desk().runs()->size() == 1; }));
         ASSERT_TRUE(me.wait([&] { return !studio->desk().worker().busy(); }));
     }
+    void nothing_is_cut_off_at(const QSize& size);
     // A pass that drifts: the sensor is turned about its own Z by 1.5 degrees first.
     void record_pass() {
         DeskPerson me(window());
@@ -247,7 +248,7 @@ TEST_F(Accessibility, WordsStandOutInBothThemes) {
 // From a small laptop to the hall's large screen: everything fits, and the sensor stays in sight.
 TEST_F(Accessibility, TheLiveProfileKeepsAThirdOfEveryWindow) {
     show("de", false);
-    for (const QSize size : {QSize(1366, 768), QSize(1920, 1080), QSize(1366, 768)}) {
+    for (const QSize size : {QSize(1366, 768), QSize(1920, 1080), QSize(1280, 680), QSize(1180, 660)}) {
         every_screen([&](const QString& where) {
             window().resize(size);
             settle();
@@ -263,16 +264,21 @@ TEST_F(Accessibility, TheLiveProfileKeepsAThirdOfEveryWindow) {
     }
 }
 
-TEST_F(Accessibility, NothingIsCutOffAt1280By800) {
+void Accessibility::nothing_is_cut_off_at(const QSize& size) {
     measure_once();
     record_pass();
     for (const QString& language : {QString("en"), QString("de")}) {
         show(language, false);
+        window().resize(size);
         every_screen([&](const QString& where) {
-            EXPECT_EQ(window().size(), QSize(1280, 800))
-                << where.toStdString() << ": the window cannot be so small";
-            window().resize(1280, 800);
+            EXPECT_EQ(window().size(), size) << where.toStdString() << ": the window cannot be so small";
+            window().resize(size);
             note(audit::cut_off(window()), where);
+            std::filesystem::create_directories(SEAMWRIGHT_SCREENS);
+            window().grab().save(QStringLiteral(SEAMWRIGHT_SCREENS "/%1x%2 %3.png")
+                                     .arg(size.width())
+                                     .arg(size.height())
+                                     .arg(where));
         });
         // The message bar, the question before a push, every kind of feature.
         emit studio->desk().trouble(
@@ -294,6 +300,16 @@ TEST_F(Accessibility, NothingIsCutOffAt1280By800) {
         QTest::qWait(50);
         note(audit::cut_off(palette), "palette");
     }
+}
+
+TEST_F(Accessibility, NothingIsCutOffAt1280By800) {
+    nothing_is_cut_off_at({1280, 800});
+}
+TEST_F(Accessibility, NothingIsCutOffAtTheSmallestWindow) {
+    nothing_is_cut_off_at({1180, 660});
+    show("en", false);
+    window().resize(1180, 660);
+    every_screen([&](const QString& where) { note(audit::unreachable(window()), where); });
 }
 
 }  // namespace

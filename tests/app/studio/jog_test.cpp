@@ -67,7 +67,7 @@ class Jogging : public testing::Test {
 TEST_F(Jogging, APressIsOneStepAlongTheChosenAxes) {
     start({});
     me->choose("jog_frame", "Robot's base");
-    me->choose("jog_step", "5 mm, 1 degrees");
+    me->choose("jog_step", "5 mm, 1°");
     const Pose before = settled();
     me->click("jog_Xplus");
     Pose after = settled();

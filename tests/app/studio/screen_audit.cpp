@@ -64,9 +64,12 @@ QRect on_window(const QWidget* w) {
     return {w->mapTo(w->window(), QPoint(0, 0)), w->size()};
 }
 
-// Docks that stand behind others in a tab group are visible to Qt, and lie outside of the window.
+// What a page is scrolled to counts as seen. Docks that stand behind others in a tab group are visible to Qt, and lie
+// outside of the window, with the page in them.
 bool on_screen(const QWidget* w) {
-    return w->isVisible() && !inner_part(w) && (page_of(w) || w->window()->rect().intersects(on_window(w)));
+    if (!w->isVisible() || inner_part(w)) return false;
+    if (const QScrollArea* page = page_of(w)) return on_screen(page);
+    return w->window()->rect().intersects(on_window(w));
 }
 
 int longest_word(const QString& text, const QFontMetrics& font) {

@@ -4756,7 +4756,7 @@ hier keine Referenz</translation>
     </message>
     <message>
         <source>Stated 3 sigma</source>
-        <translation>Angabe 3 Sigma</translation>
+        <translation>Angegeben</translation>
     </message>
     <message>
         <source>Mean and scatter over the zero-shift runs</source>

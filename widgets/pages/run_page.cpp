@@ -150,6 +150,9 @@ RunPage::RunPage(Desk& desk, const Views& views)
     history_ = make_table("history", {tr("Run"), tr("Part"), tr("When"), tr("Status")},
                           tr("All runs of the project, newest first"));
     history_->setMinimumHeight(8 * style::kTargetPx);
+    // A part of a proof has a long name: that one wraps.
+    history_->horizontalHeader()->setSectionResizeMode(1, QHeaderView::Stretch);
+    history_->horizontalHeader()->setSectionResizeMode(3, QHeaderView::ResizeToContents);
     connect(history_, &QTableWidget::cellActivated, this, [this](int row) {
         if (row >= 0 && row < static_cast<int>(summaries_.size()))
             if (auto run = desk_.run(summaries_[static_cast<std::size_t>(row)].number))
@@ -324,16 +327,17 @@ void RunPage::ask(const std::shared_ptr<const RunRecord>& judged) {
         if (at >= 0) {
             const Region& r = desk_.project().regions[static_cast<std::size_t>(at)];
             rows << QStringList{tr("%1 now").arg(QString::fromStdString(r.frame_name)),
-                                frame_text(region.push.before)};
+                                frame_text(region.push.before, "\n")};
             rows << QStringList{tr("%1 new").arg(QString::fromStdString(r.frame_name)),
-                                frame_text(region.base_from_frame)};
+                                frame_text(region.base_from_frame, "\n")};
             if (!r.spot_ids.empty())
                 if (const Spot* s = find_spot(desk_.project(), r.spot_ids.front()))
                     robots.insert(s->robot_id);
         }
     }
     set_rows(*frames_, rows);
-    frames_->setMinimumHeight((static_cast<int>(rows.size()) + 1) * style::kTargetPx + 8);
+    frames_->setMinimumHeight(frames_->verticalHeader()->length() + frames_->horizontalHeader()->height() +
+                              8);
     QStringList names;
     for (const std::string& id : robots) names << QString::fromStdString(id);
     question_->setText(tr("These frames would be written. Nothing has been sent yet."));

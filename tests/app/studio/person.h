@@ -16,8 +16,10 @@
 #include <QTest>
 #include <QTimer>
 #include <filesystem>
+#include <functional>
 
 #include "app/studio/main_window.h"
+#include "tests/app/studio/freeze_watch.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
 
@@ -28,8 +30,10 @@ inline constexpr int kPatienceMs = 20000;
 // Hands and eyes: finds controls by the names they have on the screen's tree, waits as a person waits.
 class DeskPerson {
   public:
-    explicit DeskPerson(MainWindow& window) : window_(window) {}
+    explicit DeskPerson(MainWindow& window, FreezeWatch* watch = nullptr) : window_(window), watch_(watch) {}
     MainWindow& window() const { return window_; }
+    // Of every picture: what it finds is a failure.
+    void examines(std::function<QStringList()> faults) { faults_ = std::move(faults); }
     // Of the mouse, as a hand without a keyboard would make them: a choice in a list is two, what is written is one.
     int clicks() const { return clicks_; }
     void clicked_too(int clicks = 1) const { clicks_ += clicks; }  // beside these functions
@@ -52,6 +56,7 @@ class DeskPerson {
         EXPECT_TRUE(wait([&] { return button->isEnabled(); })) << name.toStdString() << " cannot be pressed";
         look_at(button);
         ++clicks_;
+        note(name);
         QTest::mouseClick(button, Qt::LeftButton);
         QApplication::processEvents();
     }
@@ -59,6 +64,7 @@ class DeskPerson {
         auto* box = find<QComboBox>(name);
         if (!box) return;
         look_at(box);
+        note(name);
         box->setFocus();
         const int wanted = box->findText(text);
         ASSERT_GE(wanted, 0) << text.toStdString();
@@ -136,6 +142,7 @@ class DeskPerson {
         QApplication::processEvents();
     }
     void step(int n) const {
+        note(QString("step %1").arg(n));
         const auto rails = window_.findChildren<QPushButton*>("rail");
         ASSERT_EQ(rails.size(), static_cast<qsizetype>(kSteps.size()));
         ++clicks_;
@@ -151,8 +158,11 @@ class DeskPerson {
     static bool wait(const std::function<bool()>& ready) { return QTest::qWaitFor(ready, kPatienceMs); }
     void picture(const QString& name) const {
         QTest::qWait(150);
+        const FreezeWatch::Pause pause(watch_);
         std::filesystem::create_directories(SEAMWRIGHT_SCREENS);
         EXPECT_TRUE(window_.grab().save(QString(SEAMWRIGHT_SCREENS) + "/way_" + name + ".png"));
+        for (const QString& fault : faults_ ? faults_() : QStringList())
+            ADD_FAILURE() << name.toStdString() << ": " << fault.toStdString();
     }
     QString text_of(const QString& name) const {
         auto* label = find<QLabel>(name);
@@ -168,7 +178,17 @@ class DeskPerson {
     }
 
   private:
+    // Before a deed: nothing asks for an answer but the dialogs that are waited for.
+    void note(const QString& deed) const {
+        if (const QWidget* modal = QApplication::activeModalWidget(); modal && modal != &window_)
+            ADD_FAILURE() << "before " << deed.toStdString() << ", nobody asked for \""
+                          << modal->windowTitle().toStdString() << "\"";
+        if (watch_) watch_->during(deed);
+    }
+
     MainWindow& window_;
+    FreezeWatch* watch_;
+    std::function<QStringList()> faults_;
     mutable int clicks_ = 0;
 };
 

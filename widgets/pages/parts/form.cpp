@@ -4,6 +4,7 @@
 #include <QHeaderView>
 #include <QPainter>
 #include <QSvgRenderer>
+#include <QTimer>
 #include <cmath>
 
 #include "core/geometry/notation.h"
@@ -131,8 +132,13 @@ QTableWidget* make_table(const QString& name, const QStringList& header, const Q
     // The last column takes what is left, and wraps.
     table->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
     table->horizontalHeader()->setSectionResizeMode(table->columnCount() - 1, QHeaderView::Stretch);
-    QObject::connect(table->horizontalHeader(), &QHeaderView::sectionResized, table,
-                     [table] { fit_rows(*table); });
+    // Once all columns have their new widths.
+    auto* fit = new QTimer(table);
+    fit->setSingleShot(true);
+    fit->setInterval(0);
+    QObject::connect(fit, &QTimer::timeout, table, [table] { fit_rows(*table); });
+    QObject::connect(table->horizontalHeader(), &QHeaderView::sectionResized, fit,
+                     qOverload<>(&QTimer::start));
     table->horizontalHeader()->setHighlightSections(false);
     return table;
 }
@@ -168,12 +174,12 @@ std::array<double, 6> six(const Pose& pose) {
             abc.c_deg};
 }
 
-QString frame_text(const std::optional<Pose>& pose) {
+QString frame_text(const std::optional<Pose>& pose, const QString& between) {
     if (!pose) return QStringLiteral("-");
     const auto v = six(*pose);
-    QStringList parts;
-    for (std::size_t i = 0; i < 6; ++i) parts << number(v[i], i < 3 ? 2 : 3);
-    return parts.join("  ");
+    QStringList place, turn;
+    for (std::size_t i = 0; i < 3; ++i) place << number(v[i], 2), turn << number(v[i + 3], 3);
+    return place.join("  ") + between + turn.join("  ");
 }
 
 }  // namespace seamwright

@@ -43,6 +43,6 @@ QString number(double value, int decimals);
 
 // X, Y, Z in mm and KUKA's A, B, C in degrees; "-" for none.
 std::array<double, 6> six(const Pose& pose);
-QString frame_text(const std::optional<Pose>& pose);
+QString frame_text(const std::optional<Pose>& pose, const QString& between = "  ");  // X Y Z, then A B C
 
 }  // namespace seamwright

@@ -1,5 +1,6 @@
 // The studio on a German desktop, where "1.5" is written "1,5", connected to each brand's cell over its real
-// protocol: the robot's pose and frames are the cell's, and a part is measured and pushed.
+// protocol: the robot's pose and frames are the cell's, and a part is measured and pushed. No word is cut, and
+// whatever the devices take their time for, the window does not stand still.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -13,6 +14,7 @@
 
 #include "app/studio/studio.h"
 #include "tests/app/studio/person.h"
+#include "tests/app/studio/screen_audit.h"
 #include "tests/projects/sample_project.h"
 #include "tests/projects/served_cell.h"
 
@@ -66,11 +68,14 @@ class GermanStudio : public testing::TestWithParam<std::string> {
 };
 
 TEST_P(GermanStudio, ReadsPoseAndFramesAndPushes) {
-    DeskPerson me(studio->window());
-    Desk& desk = studio->desk();
-    ASSERT_TRUE(desk.is_open());
+    constexpr double kStandstill_ms = 500;
     studio->window().resize(1280, 800);
     studio->window().show();
+    FreezeWatch watch(100);
+    DeskPerson me(studio->window(), &watch);
+    me.examines([&] { return audit::cut_off(studio->window()); });
+    Desk& desk = studio->desk();
+    ASSERT_TRUE(desk.is_open());
     studio->window().show_step(Step::cell);
     me.click("connect");  // real devices are connected by a person
     ASSERT_TRUE(me.wait([&] { return desk.station().connected || !desk.station().trouble.empty(); }));
@@ -93,8 +98,7 @@ TEST_P(GermanStudio, ReadsPoseAndFramesAndPushes) {
     ASSERT_TRUE(me.wait([&] { return port && port->isVisible(); }));
     me.look_at(port);
     EXPECT_EQ(port->text().toInt(), desk.project().robots.at(0).settings.at("port").get<int>());
-    studio->window().grab().save(
-        QStringLiteral(SEAMWRIGHT_SCREENS "/cell_de_%1.png").arg(QString::fromStdString(GetParam())));
+    me.picture("cell_de_" + QString::fromStdString(GetParam()));
 
     const Pose frame = *served->cell->read_frame("path");
     served->cell->set_part({make_pose(rotation_exp({0.002, -0.001, 0.003}), {3.5, -2.25, 1.125}), {}});
@@ -125,6 +129,8 @@ TEST_P(GermanStudio, ReadsPoseAndFramesAndPushes) {
     EXPECT_LT(angle_rad(*before, frame), 1e-4);
     ASSERT_TRUE(run->regions.at(0).push.read_back);
     EXPECT_LT(distance_mm(*run->regions[0].push.read_back, run->regions[0].base_from_frame), 0.01);
+    QTest::qWait(300);
+    me.picture("pushed_de_" + QString::fromStdString(GetParam()));
     // A comma taken for a point would be millimetres off; the rest is what the cell scatters.
     const RegionCorrection& c = *run->regions[0].correction;
     EXPECT_NEAR(c.displacement.workobject_from_movedworkobject.translation().x(), 3.5, 4 * c.sigma_xyz_mm.x())
@@ -147,8 +153,7 @@ TEST_P(GermanStudio, ReadsPoseAndFramesAndPushes) {
         return !said.isEmpty();
     }));
     QTest::qWait(300);  // until the page has found room for it
-    studio->window().grab().save(
-        QStringLiteral(SEAMWRIGHT_SCREENS "/refused_de_%1.png").arg(QString::fromStdString(GetParam())));
+    me.picture("refused_de_" + QString::fromStdString(GetParam()));
     const auto stored = desk.run(run->number);
     ASSERT_TRUE(stored);
     ASSERT_FALSE(stored->regions.at(0).refusals.empty());
@@ -156,6 +161,10 @@ TEST_P(GermanStudio, ReadsPoseAndFramesAndPushes) {
         EXPECT_TRUE(said.contains(QString::fromStdString(reason.in(Language::german)))) << said.toStdString();
         EXPECT_NE(reason.in(Language::german), reason.english());
         EXPECT_FALSE(said.contains(QString::fromStdString(reason.english()))) << said.toStdString();
+    }
+    for (const Freeze& f : watch.freezes()) {
+        std::printf("stood still %.0f ms after %s\n", f.ms, f.during.toUtf8().constData());
+        EXPECT_LT(f.ms, kStandstill_ms) << f.during.toStdString();
     }
 }
 

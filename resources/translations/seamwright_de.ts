@@ -5528,6 +5528,10 @@ ausgelassen</translation>
         <translation>Noch wurde nichts gemessen.</translation>
     </message>
     <message>
+        <source>Run %1, part %2: %3</source>
+        <translation>Lauf %1, Teil %2: %3</translation>
+    </message>
+    <message>
         <source>Run %1, part %2: %3. %4</source>
         <translation>Lauf %1, Teil %2: %3. %4</translation>
     </message>

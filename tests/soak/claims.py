@@ -10,6 +10,7 @@ from line import TOPIC
 from station import apart
 
 WRONG_PLACE_MM = 0.5
+SETTLES_S = 300  # a started runner's caches
 
 
 def runs_of(project):
@@ -132,30 +133,34 @@ def page(watcher, runner, within_s=30):
         yield "the status page hardly ever answered"
 
 
-def slope(samples):
-    """(per hour, its standard error) of [(seconds, value)]."""
-    n = len(samples)
-    if n < 3:
+def slope(groups):
+    """(per hour, its standard error) of [[(seconds, value)]], one slope and a level for each group."""
+    groups = [g for g in groups if len(g) > 1]
+    freedom = sum(map(len, groups)) - len(groups) - 1
+    if freedom < 1:
         return 0.0, math.inf
-    mt, mv = sum(t for t, _ in samples) / n, sum(v for _, v in samples) / n
-    tt = sum((t - mt) ** 2 for t, _ in samples)
-    b = sum((t - mt) * (v - mv) for t, v in samples) / tt
-    left = sum((v - mv - b * (t - mt)) ** 2 for t, v in samples)
-    return 3600 * b, 3600 * math.sqrt(left / (n - 2) / tt)
+    about = []
+    for g in groups:
+        mt, mv = sum(t for t, _ in g) / len(g), sum(v for _, v in g) / len(g)
+        about += [(t - mt, v - mv) for t, v in g]
+    tt = sum(t * t for t, _ in about)
+    b = sum(t * v for t, v in about) / tt
+    left = sum((v - b * t) ** 2 for t, v in about)
+    return 3600 * b, 3600 * math.sqrt(left / freedom / tt)
 
 
 def flat(samples, minutes):
-    """(sentences, MiB/h, its error): memory, threads and files of the runner over the last half. Caches and the rings of the
-    page fill up first, and each kind of outage costs once: below 2 MiB of growth in all, 6 in less than an hour, nothing is
-    said."""
-    scatter = 2 if minutes >= 60 else 6
+    """(sentences, MiB/h, its error): memory, threads and files of the runner over the last half, each started one for itself.
+    Its caches and the rings of the page fill up first: SETTLES_S of each are left out. An hour of at most 2 MiB is flat."""
     half = [s for s in samples if s[0] >= samples[-1][0] / 2] if samples else []
-    wrong = []
-    rate, error = slope([(s[0], s[1] / 1024) for s in half])
-    grown = rate * (half[-1][0] - half[0][0]) / 3600 if len(half) > 2 else 0
-    if rate - 2 * error > 2 and grown > scatter:
+    wrong, runners, begun = [], {}, {}
+    for t, process, kib, *_ in samples:
+        if t - begun.setdefault(process, t) >= SETTLES_S and t >= samples[-1][0] / 2:
+            runners.setdefault(process, []).append((t, kib / 1024))
+    rate, error = slope(list(runners.values()))
+    if minutes >= 60 and rate - 2 * error > 2:
         wrong.append(f"the runner's memory grows by {rate:.2f} ± {error:.2f} MiB/h over the last half")
-    for at, what in ((2, "threads"), (3, "open files")):
+    for at, what in ((3, "threads"), (4, "open files")):
         first, last = [s[at] for s in half[:len(half) // 2]], [s[at] for s in half[len(half) // 2:]]
         if first and min(last) > max(first):
             wrong.append(f"the runner's {what} grow: at most {max(first)}, then at least {min(last)}")

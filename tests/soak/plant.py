@@ -360,11 +360,13 @@ class Runner:
                 self.changed.wait(min(left, 0.5))
 
     def usage(self):
-        """(KiB, threads, files) of the process, or None."""
+        """(process, its own KiB, threads, files), or None. Its own: what it has allocated and written. Pages of the program
+        and its libraries come in when a way through them is gone for the first time, and the system takes them back."""
         try:
             text = Path(f"/proc/{self.child.pid}/status").read_text()
-            found = dict(re.findall(r"^(VmRSS|Threads):\s+(\d+)", text, re.M))
-            return int(found["VmRSS"]), int(found["Threads"]), len(os.listdir(f"/proc/{self.child.pid}/fd"))
+            found = dict(re.findall(r"^(RssAnon|Threads):\s+(\d+)", text, re.M))
+            files = len(os.listdir(f"/proc/{self.child.pid}/fd"))
+            return self.child.pid, int(found["RssAnon"]), int(found["Threads"]), files
         except (OSError, KeyError):
             return None
 

@@ -281,9 +281,9 @@ class Soak:
                 self.samples.append((elapsed, *usage))
             ends = [p.event or {"event": "open"} for p in self.line.parts]
             counts = collections.Counter(e.get("status", e["event"]) for e in ends)
-            kib, threads, files = usage or (0, 0, 0)
+            _, kib, threads, files = usage or (0, 0, 0, 0)
             print(f"{elapsed / 60:5.1f} min  parts {len(ends)}  {dict(counts)}  shift {self.line.shift_mm:.2f} mm  "
-                  f"RSS {kib / 1024:.1f} MiB  threads {threads}  files {files}  "
+                  f"own {kib / 1024:.1f} MiB  threads {threads}  files {files}  "
                   f"trouble {sum(self.trouble.done.values())}/{len(self.trouble.plan)} {self.trouble.now}", flush=True)
             for _ in range(600 if self.a.minutes > 20 else 100):
                 time.sleep(0.1)
@@ -338,7 +338,7 @@ class Soak:
             "largest error of an ok part": f"{worst:.3f} mm",
             "rows in the fleet": rows, "messages": len(self.listener.messages),
             "memory": f"{rate:.2f} ± {error:.2f} MiB/h over the last half, "
-                      f"{self.samples[-1][1] / 1024 if self.samples else 0:.1f} MiB at the end",
+                      f"{self.samples[-1][2] / 1024 if self.samples else 0:.1f} MiB at the end",
             "status page": f"{len(told)} answers, slowest {max(told, default=0):.2f} s",
         })
 

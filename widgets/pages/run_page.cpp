@@ -247,10 +247,13 @@ void RunPage::refresh() {
 void RunPage::show_run(std::shared_ptr<const RunRecord> run) {
     shown_ = std::move(run);
     const RunRecord& r = *shown_;
+    const QString part = QString::fromStdString(r.part_id), why = shown(r.message);
+    // What refuses or alarms says so by itself.
+    const bool says_status = r.status == RunStatus::refused || r.status == RunStatus::alarm;
     set_verdict(*verdict_,
-                tr("Run %1, part %2: %3. %4")
-                    .arg(r.number)
-                    .arg(QString::fromStdString(r.part_id), status_text(r.status), shown(r.message)),
+                says_status
+                    ? tr("Run %1, part %2: %3").arg(r.number).arg(part, why)
+                    : tr("Run %1, part %2: %3. %4").arg(r.number).arg(part, status_text(r.status), why),
                 tone_of(r.status));
     QVector<QStringList> rows;
     QStringList refusals;

@@ -110,7 +110,7 @@ def messages(line, listener, broker_kills, runner_kills):
         part = parts[event["part"]]
         if any(m["part"] != part.name for m in got):
             yield f"the result of run {event['run']} names part {got[0]['part']} instead of {part.name}"
-        if part.announced and all(m["paint"] == 0 for m in got):
+        if part.announced and part.paint and all(m["paint"] == 0 for m in got):
             unannounced += 1
         elif part.announced and part.calls == 1 and any(m["paint"] != part.paint for m in got):
             yield f"part {part.name} was announced with paint {part.paint}, its result says {got[0]['paint']}"

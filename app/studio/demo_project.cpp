@@ -40,8 +40,7 @@ Expected<Project> demo_project() {
     for (const DoorRegion& region : default_door_regions())
         settings["robot"]["frames"]["BASE_" + region.id] =
             pose_json(default_cell_settings().base_from_workobject);
-    SEAM_TRY(auto opened, SimulatedCell::open(settings));
-    const std::shared_ptr<SimulatedCell> cell = opened;
+    SEAM_TRY(const std::shared_ptr<SimulatedCell> cell, SimulatedCell::open(settings));
     const auto sensor = make_simulated_sensor(cell);
     const auto robot = make_simulated_robot(cell);
     SEAM_TRY(auto robot_identity, robot->identity());

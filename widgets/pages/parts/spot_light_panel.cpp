@@ -57,7 +57,7 @@ SpotLightPanel::SpotLightPanel(Desk& desk, QWidget* parent) : QWidget(parent), d
                              if (!s) return;
                              Spot after = *s;
                              after.light = {};
-                             edit(std::move(after), tr("light"));
+                             edit(after, tr("light"));
                          });
     in->addLayout(make_row({find_, clear_}));
     said_ = make_text({});
@@ -78,7 +78,7 @@ void SpotLightPanel::refresh(const Spot* spot) {
     clear_->setEnabled(spot && !spot->light.empty());
 }
 
-void SpotLightPanel::edit(Spot after, const QString& what) {
+void SpotLightPanel::edit(const Spot& after, const QString& what) {
     if (const auto done = desk_.edit(after, what); !done) emit refused(done.error());
 }
 
@@ -108,7 +108,7 @@ void SpotLightPanel::take(const Spot& asked, const FoundLight& found) {
     for (const auto& [name, value] : found.settings) after.light.settings[name] = value;
     after.light.merge_us = found.merge_us;
     if (!found.merge_us.empty()) after.light.shortest_us = after.light.longest_us = 0;
-    edit(std::move(after), tr("light"));
+    edit(after, tr("light"));
     if (!shown) return;
     QString said = tr("Found (frames: %1).").arg(frames);
     if (found.merge_us.empty() && found.unserved_share > 0.03)

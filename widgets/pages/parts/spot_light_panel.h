@@ -24,7 +24,7 @@ class SpotLightPanel : public QWidget {
 
   private:
     void take(const Spot& asked, const FoundLight& found);
-    void edit(Spot after, const QString& what);
+    void edit(const Spot& after, const QString& what);
 
     Desk& desk_;
     std::string spot_id_;

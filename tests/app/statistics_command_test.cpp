@@ -76,7 +76,7 @@ TEST_F(StatisticsCommand, BadInputIsOneSentence) {
 
 TEST_F(StatisticsCommand, ADamagedFileIsRefused) {
     std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
-    refused({"statistics", file.string()}, "", 3);
+    refused({"statistics", file.string()}, "is damaged", 3);
 }
 
 TEST_F(StatisticsCommand, OptionsOfTheWatchNeedIt) {

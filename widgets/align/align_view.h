@@ -46,8 +46,8 @@ class AlignView : public QWidget {
 
   protected:
     void changeEvent(QEvent* event) override;
-    void resizeEvent(
-        QResizeEvent* event) override;  // the profiles of the pass where there is room for both plots
+    // The profiles of the pass are drawn where there is room for both plots.
+    void resizeEvent(QResizeEvent* event) override;
 
   private:
     struct Impl;

@@ -152,6 +152,8 @@ TEST_P(GermanStudio, ReadsPoseAndFramesAndPushes) {
                 said = label->text();
         return !said.isEmpty();
     }));
+    const QString verdict = me.text_of("run_verdict");
+    EXPECT_EQ(verdict.count("abgelehnt"), 1) << verdict.toStdString();
     QTest::qWait(300);  // until the page has found room for it
     me.picture("refused_de_" + QString::fromStdString(GetParam()));
     const auto stored = desk.run(run->number);

@@ -89,17 +89,19 @@ void ServedCamera::Impl::deliver(const SimulatedCell::Waiting& exposure, const W
     }
     if (frame.status != FrameStatus::ok)
         wire->fail_next(WireFault::damaged);  // the cell's damaged_probability
-    wire->push(std::move(payload), exposure.time_ns);
+    wire->push(std::move(payload), exposure.time_ns, state.acquisition);
 }
 
 void ServedCamera::Impl::draw() {
     bool armed = false;
+    std::uint64_t acquisition = 0;
     double exposure_us = cell->parameter("exposure_us"), gain_db = cell->parameter("gain_db");
     auto next_free = Clock::now();
     while (!stopping) {
         const WireState state = wire->state();
-        if (state.acquiring != armed) {
+        if (state.acquiring != armed || state.acquisition != acquisition) {
             armed = state.acquiring;
+            acquisition = state.acquisition;
             cell->arm(armed);
             wire->set_ready(armed);
             next_free = Clock::now();

@@ -92,6 +92,7 @@ struct WireCamera::Impl final : GigeMemory {
     mutable std::mutex registers_mutex;
     GPtr<ArvFakeCamera> registers;
     std::atomic<bool> ready = false;
+    std::atomic<std::uint64_t> acquisitions = 0;
     struct Waiting {
         std::vector<std::byte> payload;
         std::int64_t device_ns = 0;
@@ -154,6 +155,7 @@ struct WireCamera::Impl final : GigeMemory {
 };
 
 bool WireCamera::Impl::write(std::uint32_t address, std::span<const std::byte> from) {
+    const bool acquired = reg(ARV_FAKE_CAMERA_REGISTER_ACQUISITION) != 0;
     {
         const std::lock_guard lock(registers_mutex);
         if (!arv_fake_camera_write_memory(registers.get(), address, static_cast<guint32>(from.size()),
@@ -162,6 +164,13 @@ bool WireCamera::Impl::write(std::uint32_t address, std::span<const std::byte> f
     }
     if (reg(kCameraPrivilege) == 0)  // nobody is in control any more
         set_reg(ARV_FAKE_CAMERA_REGISTER_ACQUISITION, 0);
+    // Who draws may not have seen that one has ended before the next begins: that takes no trigger until it has been armed.
+    if (const bool acquires = reg(ARV_FAKE_CAMERA_REGISTER_ACQUISITION) != 0; acquires != acquired) {
+        if (acquires)
+            ++acquisitions;
+        else
+            ready = false;
+    }
     if (reg(kTriggerSoftware) != 0) {
         set_reg(kTriggerSoftware, 0);
         if (reg(ARV_FAKE_CAMERA_REGISTER_ACQUISITION) != 0) {
@@ -307,6 +316,7 @@ WireState WireCamera::state() const {
     const Impl& i = *impl_;
     WireState s;
     s.acquiring = i.reg(ARV_FAKE_CAMERA_REGISTER_ACQUISITION) != 0 && i.reg(kCameraPrivilege) != 0;
+    s.acquisition = i.acquisitions;
     s.x = static_cast<int>(i.reg(ARV_FAKE_CAMERA_REGISTER_X_OFFSET));
     s.y = static_cast<int>(i.reg(ARV_FAKE_CAMERA_REGISTER_Y_OFFSET));
     s.width = static_cast<int>(i.reg(ARV_FAKE_CAMERA_REGISTER_WIDTH));
@@ -328,13 +338,14 @@ void WireCamera::set_ready(bool ready) {
     impl_->queue.clear();
 }
 
-bool WireCamera::push(std::vector<std::byte> payload, std::int64_t device_ns) {
+bool WireCamera::push(std::vector<std::byte> payload, std::int64_t device_ns, std::uint64_t acquisition) {
     Impl& i = *impl_;
     auto due = std::chrono::steady_clock::now();
     {
         const std::lock_guard lock(i.mutex);
         if (i.queue.size() >= i.settings.queue || payload.size() != i.payload_size() ||
-            i.reg(ARV_FAKE_CAMERA_REGISTER_ACQUISITION) == 0) {
+            i.reg(ARV_FAKE_CAMERA_REGISTER_ACQUISITION) == 0 ||
+            (acquisition != 0 && acquisition != i.acquisitions)) {
             ++i.dropped;
             return false;
         }

@@ -46,6 +46,8 @@ struct WireCameraSettings {
 enum class WireTrigger { free, software, line };
 struct WireState {
     bool acquiring = false;
+    std::uint64_t acquisition =
+        0;  // how many have begun: what was exposed in an earlier one is no frame of this
     int x = 0, y = 0, width = 0, height = 0;
     std::uint32_t pixel_format = 0;  // PFNC code
     double exposure_us = 0, gain_db = 0;
@@ -74,8 +76,9 @@ class WireCamera {
     // Not ready: what waits for the wire is thrown away.
     void set_ready(bool ready);
     // One frame of state()'s region and format for the wire, in order; false: not acquiring, of another size
-    // than the region needs, or too many waiting (counted as dropped). `device_ns` becomes the time stamp.
-    bool push(std::vector<std::byte> payload, std::int64_t device_ns);
+    // than the region needs, of an acquisition that has ended, or too many waiting (counted as dropped). `device_ns` becomes
+    // the time stamp. `acquisition`: of the exposure; 0: the one that runs.
+    bool push(std::vector<std::byte> payload, std::int64_t device_ns, std::uint64_t acquisition = 0);
     // The next frame that leaves: damaged loses some of its packets, lost all of them, late leaves `late_ms`
     // after its time.
     void fail_next(WireFault fault, int late_ms = 0);

@@ -38,6 +38,7 @@ const SettingTable& genicam_settings() {
         {text("serial", "", "which camera; of serial, address and id one is needed, all given must fit"),
          text("address", "", "which camera, IPv4"),
          text("id", "", "which camera, as Aravis names it"),
+         yes_no("hardware_trigger", false, "the robot fires the sensor: trigger is Line1 unless named"),
          list("search", nlohmann::json::array(),
               "addresses asked one by one for the serial, instead of a broadcast everywhere"),
          number("exposure_us", nullptr, 0, 1e9, "at the start; else the camera's own"),
@@ -51,7 +52,6 @@ const SettingTable& genicam_settings() {
          choice("channel", {"grey", "red", "green", "blue", "red-difference"},
                 "of colour formats: what is made into the image"),
          text("trigger", "software", "software, free, or an input of the camera: Line1"),
-         yes_no("hardware_trigger", false, "the robot fires the sensor: trigger is Line1 unless named"),
          object("features", {},
                 "any GenICam feature, set in the alphabet's order: number, text, true or false; null "
                 "executes a command"),

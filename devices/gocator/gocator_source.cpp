@@ -489,11 +489,12 @@ const SettingTable& gocator_settings() {
     const gocator::AsciiFormat ascii;
     static const SettingTable table = entry::joined(
         {entry::text("address", nullptr, "of the sensor, must be given"),
-         entry::whole("control_port", gdp::kControlPort, 1, 65535, "of the sensor's commands"),
          entry::choice(
              "output", {"profiles", "ascii"},
              "whole profiles (tick them on the sensor's Output page), or what the sensor's own tools "
              "measured, as a profile of a few points"),
+         entry::yes_no("hardware_trigger", false, "the robot fires the sensor's digital input"),
+         entry::whole("control_port", gdp::kControlPort, 1, 65535, "of the sensor's commands"),
          entry::whole("data_port", nullptr, 1, 65535, "3196 of profiles, 8190 of ascii"),
          entry::whole("source", 0, 0, 3, "of profiles: 0 top, 1 bottom, 2 top left, 3 top right"),
          entry::list(
@@ -505,7 +506,6 @@ const SettingTable& gocator_settings() {
          entry::text("terminator", ascii.terminator, "of ascii, as set on the sensor"),
          entry::text("invalid", ascii.invalid, "of ascii, as set on the sensor"),
          entry::text("serial", "", "another sensor is refused"),
-         entry::yes_no("hardware_trigger", false, "the robot fires the sensor's digital input"),
          entry::whole("timeout_ms", 1000, 50, 60000, "for an answer"),
          entry::whole("start_timeout_ms", 15000, 50, 120000, "for the answers to start and stop"),
          entry::whole("buffers", 8, 2, 1000, "frames that may be handed out")},

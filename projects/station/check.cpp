@@ -8,12 +8,14 @@
 #include "core/features/kinds/feature_registry.h"
 #include "devices/capture/capture.h"
 #include "devices/line/line_link.h"
+#include "devices/registry.h"
 #include "projects/drift/drift_point.h"
 #include "projects/gate/safety_gate.h"
 #include "projects/measure/fields.h"
 #include "projects/measure/measure.h"
 #include "projects/model/part_types.h"
 #include "projects/model/project.h"
+#include "projects/station/acquire.h"
 #include "projects/station/check.h"
 #include "projects/station/spot_light.h"
 
@@ -127,6 +129,20 @@ void check_sensor(const Project& project, const SensorSetup& sensor, Findings& f
     findings.add(where, Text("its calibration \"{}\" is not in the project", sensor.calibration_id));
 }
 
+// The telegram of the robot's arrival, our answer and the camera's command take tens of milliseconds, each time others: at
+// 100 mm/s millimetres of travel, which no jitter window covers. A device of ours knows its own place.
+void check_trigger(const Project& project, const Spot& spot, const Text& where, Findings& findings) {
+    const SensorSetup* sensor = find_sensor(project, spot.sensor_id);
+    const RobotSetup* robot = find_robot(project, spot.robot_id);
+    if (!sensor || !robot || is_own_device(sensor->driver) || is_own_device(robot->driver)) return;
+    findings.unless(
+        spot.stop_at_trigger || hardware_triggered(*sensor), where,
+        Text(
+            "its sensor {} is triggered by software while the robot passes: where it is exposed is not known",
+            sensor->id),
+        "wire the robot's output to the sensor and set \"hardware_trigger\", or stand still at the trigger");
+}
+
 void check_spot(const Project& project, const Spot& spot, Findings& findings) {
     const Text where("spot {}", spot.id);
     findings.unless(known(project.sensors, spot.sensor_id), where,
@@ -142,6 +158,7 @@ void check_spot(const Project& project, const Spot& spot, Findings& findings) {
     findings.unless(std::isfinite(spot.entry_mm) && spot.entry_mm >= 0 && std::isfinite(spot.exit_mm) &&
                         spot.exit_mm >= 0 && spot.entry_mm <= 1000 && spot.exit_mm <= 1000,
                     where, "entry and exit must be between 0 and 1000 mm");
+    check_trigger(project, spot, where, findings);
     findings.concern(Concern::setup);
     if (auto finder = make_feature_finder(spot.feature); !finder)
         findings.add(joined(where, "", ".feature"), finder.error().what, finder.error().mend);

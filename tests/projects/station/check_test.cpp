@@ -132,5 +132,27 @@ TEST(Check, GradesWhatConcernsMotion) {
         << "the gate says it";
 }
 
+// In motion a sensor that is triggered by software is exposed where nobody knows; a wire, standing still, or a device of
+// ours on either side knows.
+TEST(Check, NoSoftwareTriggerInMotion) {
+    Project project = make_fake_cell()->project;
+    ASSERT_FALSE(project.spots[0].stop_at_trigger);
+    const auto refused = [&] { return motion_findings(project, false).size(); };
+    const std::size_t spots = project.spots.size();
+    for (SensorSetup& s : project.sensors) s.driver = "genicam";
+    EXPECT_EQ(refused(), 0u) << "the robot is ours";
+    for (RobotSetup& r : project.robots) r.driver = "kuka-eki";
+    EXPECT_EQ(refused(), spots);
+    EXPECT_THAT(motion_findings(project, false).front().sentence(), testing::HasSubstr("hardware_trigger"));
+    project.spots[0].stop_at_trigger = true;
+    EXPECT_EQ(refused(), spots - 1);
+    for (SensorSetup& s : project.sensors) s.settings["hardware_trigger"] = true;
+    EXPECT_EQ(refused(), 0u);
+    for (SensorSetup& s : project.sensors) s.settings["hardware_trigger"] = false;
+    EXPECT_EQ(refused(), spots - 1);
+    for (SensorSetup& s : project.sensors) s.driver = "replay";
+    EXPECT_EQ(refused(), 0u);
+}
+
 }  // namespace
 }  // namespace seamwright

@@ -27,6 +27,7 @@ namespace seamwright {
 
 enum class Scene { part, sphere, plate, triangle };
 std::string_view to_string(Scene scene);
+std::optional<Scene> scene_from_string(std::string_view text);
 
 struct PartState {
     Pose workobject_from_movedworkobject = Pose::Identity();  // D of methods.md 3

@@ -27,6 +27,12 @@ std::string_view to_string(Scene scene) {
     return "part";
 }
 
+std::optional<Scene> scene_from_string(std::string_view text) {
+    for (const Scene scene : kScenes)
+        if (to_string(scene) == text) return scene;
+    return std::nullopt;
+}
+
 namespace {
 
 SettingTable part_table() {

@@ -34,8 +34,11 @@ struct SimCellArguments {
 constexpr const char* kWords =
     "start [PART] | type ID (its measuring program is loaded, calls say it) | part {JSON: displacement, "
     "bend_mm, twist_mm} | "
-    "shift {JSON: pose} (the robot stands off by that in base) | camera on|off | mode MODE | fault FAULT | "
-    "state | stop";
+    "shift {JSON: pose} (the robot stands off by that in base) | scene part|sphere|plate|triangle (what "
+    "stands "
+    "before the sensor) | flange {JSON: pose} (somebody jogs the robot there by its own panel) | project "
+    "FILE.seam "
+    "(its measuring program is loaded) | camera on|off | mode MODE | fault FAULT | state | stop";
 
 // "kuka-eki" or "kuka-eki:54600"
 Expected<ServedController> controller_from(const std::string& text) {
@@ -174,6 +177,14 @@ json obey(Serving& serving, const std::string& line, bool& stop) {
     if (word == "start") {
         for (const auto& [name, controller] : server.controllers())
             controller->press_start(PartId(rest), serving.type);
+    } else if (word == "project") {
+        auto file = ProjectFile::open(rest, FileAccess::read_only);
+        if (!file) return refuse(file.error().sentence());
+        auto project = file->load();
+        if (!project) return refuse(project.error().sentence());
+        serving.project = std::move(*project);
+        serving.type = {};
+        server.cell().store_program(program_of(serving.project));
     } else if (word == "type") {
         const auto type = called_type(serving.project, rest);
         if (!type) return refuse(type.error().sentence());
@@ -193,6 +204,16 @@ json obey(Serving& serving, const std::string& line, bool& stop) {
         if (!shift) return refuse(shift.error().sentence());
         serving.base_from_shifted = *shift;
         place_part(serving);
+    } else if (word == "scene") {
+        const auto scene = scene_from_string(rest);
+        if (!scene) return refuse("there is no scene \"" + rest + "\"");
+        server.cell().set_scene(*scene);
+    } else if (word == "flange") {
+        const auto said = parse_json(rest, "flange");
+        if (!said) return refuse(said.error().sentence());
+        const auto flange = parse_pose(*said, "flange");
+        if (!flange) return refuse(flange.error().sentence());
+        server.cell().move_to(*flange);
     } else if (word == "camera") {
         if (rest != "on" && rest != "off") return refuse("say: camera on, or camera off");
         if (const auto plugged = server.plug_camera(rest == "on"); !plugged)

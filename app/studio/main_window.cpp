@@ -215,6 +215,7 @@ void MainWindow::make_docks() {
     QDockWidget* events = add_dock("dock_events", tr("Events"), new EventList(desk_));
     views_.jog = new JogPanel(desk_);
     QDockWidget* jog = add_dock("dock_jog", tr("Jog"), scrolled(views_.jog));
+    connect(&desk_, &Desk::attendance_wanted, this, [this] { views_.raise(views_.jog); });
     addDockWidget(Qt::RightDockWidgetArea, profile);
     tabifyDockWidget(profile, camera);
     addDockWidget(Qt::RightDockWidgetArea, scene);

@@ -71,15 +71,7 @@ class Live {
         if (options_.said) options_.said(text);
     }
 
-    std::optional<Pose> target() const {
-        if (const auto next = next_pose(session_, known_mounting(session_, station_.project())))
-            return next->base_from_flange;
-        const SensorSetup* sensor = find_sensor(station_.project(), session_.sensor_id());
-        if (!session_.state().captures.empty() || !sensor || !is_simulated_cell(sensor->driver))
-            return std::nullopt;
-        const auto start = simulated_start(session_.method(), sensor->settings);
-        return start ? std::optional(start->base_from_flange) : std::nullopt;
-    }
+    std::optional<Pose> target() const { return next_place(session_, station_.project()); }
 
     // false: there is no pose left to go to.
     Expected<bool> go() const {
@@ -168,16 +160,9 @@ class Live {
         return {};
     }
 
-    // No pose is left: the newest ones verify, as long as enough remain to solve with.
     Expected<void> keep_back() {
-        const auto captures = session_.state().captures;
-        for (auto it = captures.rbegin(); it != captures.rend(); ++it) {
-            if (session_.verification_captures() >= kept_back_ ||
-                session_.solving_captures() <= session_.method().fewest)
-                break;
-            if (it->verification || it->left_out) continue;
-            SEAM_OK(session_.set_verification(it->taken->id, true));
-        }
+        for (const std::string& id : to_keep_back(session_, kept_back_))
+            SEAM_OK(session_.set_verification(id, true));
         return {};
     }
 

@@ -3334,6 +3334,26 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
 <context>
     <name>seamwright::GuidedPage</name>
     <message>
+        <source>Capture %1 of %2</source>
+        <translation>Aufnahme %1 von %2</translation>
+    </message>
+    <message>
+        <source>Moves the robot straight to the next pose: look whether the way is free</source>
+        <translation>Fährt den Roboter geradewegs zur nächsten Pose: nachsehen, ob der Weg frei ist</translation>
+    </message>
+    <message>
+        <source>Sends the robot straight to one proposed pose after the other and captures there: look whether the ways are free</source>
+        <translation>Schickt den Roboter geradewegs von einer vorgeschlagenen Pose zur nächsten und nimmt dort auf: nachsehen, ob die Wege frei sind</translation>
+    </message>
+    <message>
+        <source>Capture all</source>
+        <translation>Alle aufnehmen</translation>
+    </message>
+    <message>
+        <source>Stops what runs; captures are kept. A motion under way is done, none follows.</source>
+        <translation>Hält an, was läuft; Aufnahmen bleiben. Eine begonnene Fahrt wird beendet, keine folgt.</translation>
+    </message>
+    <message>
         <source>Which convention?</source>
         <translation>Welche Konvention?</translation>
     </message>
@@ -3390,10 +3410,6 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <translation>Abbrechen</translation>
     </message>
     <message>
-        <source>Stops what runs; captures are kept</source>
-        <translation>Hält an, was läuft; Aufnahmen bleiben erhalten</translation>
-    </message>
-    <message>
         <source>Capture</source>
         <translation>Aufnehmen</translation>
     </message>
@@ -3420,10 +3436,6 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>Go there</source>
         <translation>Dorthin fahren</translation>
-    </message>
-    <message>
-        <source>Moves the simulated robot to the next pose</source>
-        <translation>Fährt den simulierten Roboter zur nächsten Pose</translation>
     </message>
     <message>
         <source>Copy</source>
@@ -3504,10 +3516,6 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>1 sigma</source>
         <translation>1 Sigma</translation>
-    </message>
-    <message>
-        <source>Unit</source>
-        <translation>Einheit</translation>
     </message>
     <message>
         <source>What was found, and how sure it is</source>
@@ -3821,6 +3829,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
 </context>
 <context>
     <name>seamwright::JogPanel</name>
+    <message>
+        <source>The robot moves when somebody stands beside it: say so with the tick, then press again.</source>
+        <translation>Der Roboter fährt, wenn jemand bei ihm steht: mit dem Haken bestätigen, dann noch einmal drücken.</translation>
+    </message>
     <message>
         <source>Robot</source>
         <translation>Roboter</translation>
@@ -5815,12 +5827,12 @@ ausgelassen</translation>
 <context>
     <name>seamwright::SpotHead</name>
     <message>
-        <source>Go there</source>
-        <translation>Dorthin fahren</translation>
+        <source>Moves the robot straight to the spot: look whether the way is free</source>
+        <translation>Fährt den Roboter geradewegs zur Messstelle: nachsehen, ob der Weg frei ist</translation>
     </message>
     <message>
-        <source>Moves the simulated robot to the spot</source>
-        <translation>Fährt den simulierten Roboter zur Messstelle</translation>
+        <source>Go there</source>
+        <translation>Dorthin fahren</translation>
     </message>
     <message>
         <source>What comes next of this spot</source>
@@ -6028,6 +6040,14 @@ ausgelassen</translation>
 <context>
     <name>seamwright::StationWorker</name>
     <message>
+        <source>The robot was not moved: cancelled.</source>
+        <translation>Der Roboter wurde nicht gefahren: abgebrochen.</translation>
+    </message>
+    <message>
+        <source>Moving the robot</source>
+        <translation>Roboter wird gefahren</translation>
+    </message>
+    <message>
         <source>Recording</source>
         <translation>Aufzeichnung</translation>
     </message>
@@ -6066,14 +6086,6 @@ ausgelassen</translation>
     <message>
         <source>Recording the pass</source>
         <translation>Durchfahrt aufzeichnen</translation>
-    </message>
-    <message>
-        <source>Moving the simulated robot</source>
-        <translation>Den simulierten Roboter fahren</translation>
-    </message>
-    <message>
-        <source>only a simulated robot is moved from here</source>
-        <translation>nur ein simulierter Roboter wird von hier gefahren</translation>
     </message>
     <message>
         <source>Setting the sensor</source>
@@ -6309,6 +6321,10 @@ und %1 weitere</translation>
 <context>
     <name>seamwright::TeachPage</name>
     <message>
+        <source>Moves the robot straight to the spot: look whether the way is free</source>
+        <translation>Fährt den Roboter geradewegs zur Messstelle: nachsehen, ob der Weg frei ist</translation>
+    </message>
+    <message>
         <source>Jog the sensor over the contour, take the pose, point at the feature, measure its reference.</source>
         <translation>Den Sensor über die Kontur fahren, die Pose nehmen, auf das Merkmal zeigen, seine Referenz messen.</translation>
     </message>
@@ -6403,10 +6419,6 @@ und %1 weitere</translation>
     <message>
         <source>Go there</source>
         <translation>Dorthin fahren</translation>
-    </message>
-    <message>
-        <source>Moves the simulated robot to the spot; a real one is jogged</source>
-        <translation>Fährt den simulierten Roboter zur Messstelle; ein echter wird von Hand verfahren</translation>
     </message>
     <message>
         <source>Sensor</source>

@@ -123,8 +123,10 @@ Desk::Desk(QObject* parent) : QObject(parent), worker_(live_) {
         const bool healthier = troubles(*state) != troubles(*state_);
         state_ = std::move(state);
         if (healthier && !changes) derive();
+        // Connected anew, with a robot more, is connected before and after.
+        if (state_->connected) take_identities(*state_);
         if (changes) {
-            if (state_->connected) take_identities(*state_);
+            attended_.clear();
             note(EventKind::device, "studio",
                  state_->connected ? "devices connected" : "devices disconnected");
             set_recipes();
@@ -199,6 +201,7 @@ void Desk::take_over(ProjectFile file, Project project) {
     undo_.clear();
     restored_ = false;
     state_ = std::make_shared<const StationState>();
+    attended_.clear();
     recovery_writer_.open(file_->path());
     worker_.open(file_->path(), project_);
     worker_.act_for(signed_in_);
@@ -651,14 +654,6 @@ Expected<void> Desk::place_simulated_part(const Pose& displacement, double bend_
 }
 
 // ------------------------------------------------------------------------------------------ what is known
-
-void Desk::note_pose(const std::string& robot_id, const Pose& base_from_flange) {
-    auto state = std::make_shared<StationState>(*state_);
-    for (RobotState& r : state->robots)
-        if (r.id == robot_id) r.base_from_flange = base_from_flange;
-    state_ = std::move(state);
-    emit station_changed();
-}
 
 void Desk::take_identities(const StationState& state) {
     bool news = false;

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "core/ids.h"
 #include "projects/file/file_use.h"
@@ -99,10 +100,18 @@ class Desk : public QObject {
     template <class T>
     std::string free_id(const std::string& prefix) const;
 
-    // --- what else is known
-    const StationState& station() const { return *state_; }
+    // --- motions from the desk. A robot that is no simulation moves only after a person has said that somebody stands beside
+    // it, which is asked again after every connection.
+    bool can_move(const std::string& robot_id) const;  // connected, and its driver moves it
+    bool attended(const std::string& robot_id) const;  // said, or a simulation
+    void attend(const std::string& robot_id, bool somebody_stands_beside);
+    // Straight there; where nobody stands beside it, attendance_wanted() instead. false: it does not move.
+    bool go_to(const std::string& robot_id, const Pose& base_from_flange);
     // Where a robot that was moved by hand stands, before the next state tells it.
     void note_pose(const std::string& robot_id, const Pose& base_from_flange);
+
+    // --- what else is known
+    const StationState& station() const { return *state_; }
     const std::vector<CheckItem>& checks() const { return checks_; }
     const StepStates& steps() const { return steps_; }
     const Facts& facts() const { return facts_; }
@@ -124,6 +133,8 @@ class Desk : public QObject {
     void modified_changed(bool modified);
     void checklist_changed();
     void station_changed();
+    void attended_changed();
+    void attendance_wanted(std::string robot_id);  // a motion was asked for
     void runs_changed();
     void events_changed();
     void recovery_written();  // every edit so far would survive a crash
@@ -160,6 +171,7 @@ class Desk : public QObject {
     Facts facts_;  // evidence: of this file
     std::vector<CheckItem> checks_;
     StepStates steps_;
+    std::set<std::string> attended_;  // robots beside which somebody stands
     Language language_ = Language::english;
     bool restored_ = false, was_modified_ = false;
 };

@@ -43,6 +43,10 @@ JogPanel::JogPanel(Desk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
     auto* box = new QVBoxLayout(this);
     box->setContentsMargins(8, 2, 8, 2);
     box->setSpacing(4);
+    asked_ = make_text({});
+    asked_->setObjectName("jog_asked");
+    asked_->hide();
+    box->addWidget(asked_);
     make_choices();
     make_keys();
     place_ = make_text({});
@@ -59,6 +63,8 @@ JogPanel::JogPanel(Desk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
     timer_.setInterval(kPeriod);
     connect(&timer_, &QTimer::timeout, this, &JogPanel::advance);
     connect(&desk_, &Desk::station_changed, this, &JogPanel::refresh);
+    connect(&desk_, &Desk::attended_changed, this, &JogPanel::refresh);
+    connect(&desk_, &Desk::attendance_wanted, this, &JogPanel::ask_for);
     connect(&desk_, &Desk::opened, this, [this] {
         target_.reset();
         refresh();
@@ -119,10 +125,10 @@ void JogPanel::make_choices() {
     connect(way_, &QComboBox::currentIndexChanged, this, &JogPanel::refresh);
     connect(robot_, &QComboBox::currentIndexChanged, this, [this] {
         target_.reset();
-        consent_->setChecked(false);
+        desk_.attend(robot(), false);
         refresh();
     });
-    connect(consent_, &QCheckBox::toggled, this, &JogPanel::refresh);
+    connect(consent_, &QCheckBox::toggled, this, [this](bool on) { desk_.attend(robot(), on); });
 }
 
 void JogPanel::make_keys() {
@@ -162,9 +168,7 @@ const RobotState* JogPanel::state() const {
 
 bool JogPanel::allowed() const {
     const RobotState* r = state();
-    const RobotSetup* setup = find_robot(desk_.project(), robot());
-    return r && setup && r->can_move && r->base_from_flange &&
-           (is_simulated_cell(setup->driver) || consent_->isChecked());
+    return r && r->can_move && r->base_from_flange && desk_.attended(robot());
 }
 
 // Of the selected spot's sensor, else of the first that has a calibration on this robot.
@@ -180,8 +184,6 @@ Pose JogPanel::flange_from_sensor() const {
 
 void JogPanel::refresh() {
     const bool connected = desk_.station().connected;
-    if (connected && !was_connected_) consent_->setChecked(false);
-    was_connected_ = connected;
     QStringList ids;
     for (const RobotSetup& r : desk_.project().robots) ids << QString::fromStdString(r.id);
     QStringList shown;
@@ -195,6 +197,9 @@ void JogPanel::refresh() {
     }
     const RobotSetup* setup = find_robot(desk_.project(), robot());
     consent_->setVisible(setup && !is_simulated_cell(setup->driver));
+    const QSignalBlocker quiet(consent_);
+    consent_->setChecked(desk_.attended(robot()));
+    if (consent_->isChecked()) asked_->hide();
     const bool steps = way_->currentIndex() == 0;
     step_->setEnabled(steps);
     speed_->setEnabled(!steps);
@@ -218,6 +223,16 @@ void JogPanel::refresh() {
                             .arg(number(p.x(), 2), number(p.y(), 2), number(p.z(), 2), number(abc.a_deg, 3),
                                  number(abc.b_deg, 3), number(abc.c_deg, 3)));
     }
+}
+
+void JogPanel::ask_for(const std::string& robot_id) {
+    if (const int at = robot_->findText(QString::fromStdString(robot_id)); at >= 0)
+        robot_->setCurrentIndex(at);
+    set_verdict(*asked_,
+                tr("The robot moves when somebody stands beside it: say so with the tick, then press again."),
+                Tone::attention);
+    asked_->show();
+    consent_->setFocus();
 }
 
 void JogPanel::pressed(const Key& key) {

@@ -44,6 +44,7 @@ class JogPanel : public QWidget {
     void make_choices();
     void make_keys();
     void refresh();
+    void ask_for(const std::string& robot_id);  // that somebody stands beside it
     void pressed(const Key& key);
     void stop();
     void advance();  // while a key is pressed
@@ -58,7 +59,7 @@ class JogPanel : public QWidget {
     QComboBox *robot_, *frame_, *way_, *step_;
     QDoubleSpinBox* speed_;
     QCheckBox* consent_;
-    QLabel *place_, *message_;
+    QLabel *asked_, *place_, *message_;
     QBoxLayout* columns_ = nullptr;
     std::array<Key, 12> keys_;
     const Key* pressed_ = nullptr;
@@ -66,7 +67,6 @@ class JogPanel : public QWidget {
     std::chrono::steady_clock::time_point advanced_, sent_;
     // Where the robot was sent last; its next step starts there until it has arrived.
     std::optional<Pose> target_;
-    bool was_connected_ = false;
 };
 
 }  // namespace seamwright

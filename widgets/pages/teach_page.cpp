@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/features/kinds/feature_registry.h"
-#include "devices/registry.h"
 #include "projects/measure/fields.h"
 #include "projects/measure/measure.h"
 #include "widgets/editors/list_habits.h"
@@ -155,9 +154,8 @@ void TeachPage::make_pose(QVBoxLayout& in) {
     take_ = make_button("take_pose", "robot", tr("Take from the robot"),
                         tr("The pose where the robot stands now"), [this] { take_pose(); });
     go_ = make_button("go_there", "shift", tr("Go there"),
-                      tr("Moves the simulated robot to the spot; a real one is jogged"), [this] {
-                          if (spot())
-                              desk_.worker().jog_simulated(spot()->robot_id, spot()->base_from_flange);
+                      tr("Moves the robot straight to the spot: look whether the way is free"), [this] {
+                          if (spot()) desk_.go_to(spot()->robot_id, spot()->base_from_flange);
                       });
     in.addLayout(make_row({take_, go_,
                            make_button("open_jog", "robot", tr("Jog"), tr("Move the robot by hand (F8)"),
@@ -393,10 +391,8 @@ void TeachPage::refresh() {
     } else {
         pose_->set_pose(s->base_from_flange);
     }
-    const RobotSetup* robot = find_robot(desk_.project(), s->robot_id);
-    go_->setVisible(robot && is_simulated_cell(robot->driver));
     take_->setEnabled(connected);
-    go_->setEnabled(connected);
+    go_->setEnabled(desk_.can_move(s->robot_id));
     add_via_->setEnabled(connected);
     const int row = via_->currentRow();
     via_->clear();

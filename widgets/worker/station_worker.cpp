@@ -257,15 +257,19 @@ void StationWorker::take_shots(const std::vector<std::string>& sensor_ids, const
     });
 }
 
-void StationWorker::jog_simulated(const std::string& robot_id, const Pose& base_from_flange) {
-    post(tr("Moving the simulated robot"), [=, this](Station& station, const std::stop_token&) {
-        const RobotSetup* setup = find_robot(station.project(), robot_id);
+void StationWorker::go_to(const std::string& robot_id, const Pose& base_from_flange) {
+    post(tr("Moving the robot"), [=, this](Station& station, const std::stop_token& cancelled) {
+        QString trouble;
         RobotLink* robot = station.robot(robot_id);
-        if (!setup || !robot || !is_simulated_cell(setup->driver))
-            return emit failed(tr("only a simulated robot is moved from here"));
-        if (auto moved = robot->move_to(base_from_flange); !moved)
-            emit failed(shown_error(tr("The robot was not moved."), moved.error()));
+        if (cancelled.stop_requested())
+            trouble = tr("The robot was not moved: cancelled.");
+        else if (!robot)
+            trouble = tr("The robot is not connected.");
+        else if (auto moved = robot->move_to(base_from_flange); !moved)
+            trouble = shown_error(tr("The robot was not moved."), moved.error());
+        if (!trouble.isEmpty() && !cancelled.stop_requested()) emit failed(trouble);
         publish(station);
+        emit arrived(robot_id, trouble);
     });
 }
 

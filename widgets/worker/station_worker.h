@@ -110,7 +110,9 @@ class StationWorker : public QObject {
     // Robot standing still: its pose, the stripe, and with `board` a second image with the laser off, exposed
     // for the surroundings; one sensor after another. An empty robot_id asks no robot.
     void take_shots(const std::vector<std::string>& sensor_ids, const std::string& robot_id, bool board);
-    void jog_simulated(const std::string& robot_id, const Pose& base_from_flange);  // other drivers refuse
+    // Straight to a place, at the speed that the driver moves with; arrived() tells what became of it. Whether the robot may
+    // be moved from the desk is Desk::go_to()'s to ask.
+    void go_to(const std::string& robot_id, const Pose& base_from_flange);
     // By hand, step by step, beside the live picture: the newest place asked for counts, those before it are passed over;
     // dropped while something else runs. Any robot that can move from here. jogged() tells what became of it.
     void jog(const std::string& robot_id, const Pose& base_from_flange);
@@ -128,6 +130,8 @@ class StationWorker : public QObject {
     void failed(QString sentence);
     // Where it stands now. `trouble` is empty when it went well.
     void jogged(std::string robot_id, seamwright::Pose base_from_flange, QString trouble);
+    // At the end of go_to(); `trouble` is empty when the robot stands there.
+    void arrived(std::string robot_id, QString trouble);
     void measured(std::shared_ptr<const seamwright::RunRecord> run);
     void confirm_push(std::shared_ptr<const seamwright::RunRecord> judged);
     void place_part(QString name, seamwright::Pose base_from_shiftedbase);

@@ -2,6 +2,8 @@
 
 #include "devices/simulated/cell.h"
 #include "projects/calibrate/methods/example/target_views.h"
+#include "projects/calibrate/session/shot.h"
+#include "projects/measure/measure.h"
 
 namespace seamwright {
 namespace {
@@ -96,6 +98,27 @@ std::optional<SimulatedStart> simulated_start(const CalibrationMethod& method,
                           std::string(to_string(method.capture == CaptureKind::sphere_profile ? Scene::sphere
                                                 : method.capture == CaptureKind::apex ? Scene::triangle
                                                                                       : Scene::plate))};
+}
+
+std::optional<Pose> next_place(const CalibrationSession& session, const Project& project) {
+    if (const auto next = next_pose(session, known_mounting(session, project))) return next->base_from_flange;
+    const SensorSetup* sensor = find_sensor(project, session.sensor_id());
+    if (!session.state().captures.empty() || !sensor || !is_simulated_cell(sensor->driver)) return std::nullopt;
+    const auto start = simulated_start(session.method(), sensor->settings);
+    return start ? std::optional(start->base_from_flange) : std::nullopt;
+}
+
+std::vector<std::string> to_keep_back(const CalibrationSession& session, int wanted) {
+    std::vector<std::string> ids;
+    const auto& captures = session.state().captures;
+    for (auto it = captures.rbegin(); it != captures.rend(); ++it) {
+        const int so_far = static_cast<int>(ids.size());
+        if (session.verification_captures() + so_far >= wanted ||
+            session.solving_captures() - so_far <= session.method().fewest)
+            break;
+        if (!it->verification && !it->left_out) ids.push_back(it->taken->id);
+    }
+    return ids;
 }
 
 std::optional<ViewMark> view_mark(const CalibrationSession& session, const Pose& flange_from_sensor,

@@ -27,6 +27,14 @@ struct SimulatedStart {
 std::optional<SimulatedStart> simulated_start(const CalibrationMethod& method,
                                               const nlohmann::json& cell_settings);
 
+// Where the robot is to go for the next capture: next_pose(), and before the first one where a simulated cell has its
+// target.
+std::optional<Pose> next_place(const CalibrationSession& session, const Project& project);
+
+// Where no pose is left, what can be kept back for verification: the newest captures, until `wanted` are, as long as
+// enough remain to solve with.
+std::vector<std::string> to_keep_back(const CalibrationSession& session, int wanted);
+
 // One capture in the picture of orientations: how far the sight line is tilted against the first capture's,
 // and the turn about it.
 struct ViewMark {

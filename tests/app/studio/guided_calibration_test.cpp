@@ -259,6 +259,39 @@ TEST_F(Guided, SphereWithABadPoseAndAKillInBetween) {
     EXPECT_TRUE(me.wait([&] { return me.find<QPushButton>("calibration_use")->isEnabled(); }));
 }
 
+// One press sends the robot from view to view until the calibration can be used; stopped in between, the next press goes on.
+TEST_F(Guided, AllCapturesByOnePress) {
+    make_project();
+    Studio studio(*qApp, options());
+    MainWindow& window = studio.window();
+    window.resize(1280, 800);
+    window.show();
+    DeskPerson me(window);
+    Desk& desk = studio.desk();
+    go_to_page(me, desk, "tcp-sphere");
+    const int since = me.clicks();
+    me.click("calibration_set_target");
+    me.click("calibration_all");
+    ASSERT_TRUE(me.wait([&] { return captures(me) >= 3; })) << window_text(me);
+    me.picture("guided_series");
+    me.click("calibration_cancel");
+    ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
+    QTest::qWait(500);
+    const int stopped = captures(me);
+    QTest::qWait(1500);
+    EXPECT_EQ(captures(me), stopped) << "nothing goes on by itself";
+    me.click("calibration_all");
+    auto* use = me.find<QPushButton>("calibration_use");
+    ASSERT_TRUE(QTest::qWaitFor([&] { return use->isEnabled(); }, 6 * kPatienceMs)) << window_text(me);
+    const CalibrationMethod& method = *find_method("tcp-sphere");
+    EXPECT_EQ(captures(me), method.advised + 1) << "one is kept back";
+    EXPECT_TRUE(me.text_of("calibration_verified").startsWith("confirmed"))
+        << me.text_of("calibration_verified").toStdString();
+    me.click("calibration_use");
+    EXPECT_EQ(desk.project().sensors.at(0).calibration_id, desk.project().calibrations.back().id);
+    EXPECT_EQ(me.clicks() - since, 5) << "two of them to stop and to go on";
+}
+
 // Every method that captures a picture live: from the first capture over a kill and a bad pose to the stored
 // calibration. `column`: of the list, where the bad pose stands out.
 struct LiveMethod {

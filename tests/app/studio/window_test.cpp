@@ -262,7 +262,7 @@ TEST_F(Furniture, ViaPointsAreAddedWhereTheRobotStandsAndTakenOut) {
     me.step(3);
     ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
     const auto stands = [&](const Pose& at) {
-        desk.worker().jog_simulated(desk.project().robots.front().id, at);
+        desk.worker().go_to(desk.project().robots.front().id, at);
         return me.wait([&] {
             const auto& robots = desk.station().robots;
             return !robots.empty() && robots.front().base_from_flange &&

@@ -89,7 +89,7 @@ class OneShotAtTheDesk : public testing::Test {
         if (!desk.station().connected) desk.worker().connect_devices();
         ASSERT_TRUE(wait_until([&] { return desk.station().connected && !desk.worker().busy(); }))
             << me.troubles.join("; ").toStdString();
-        desk.worker().jog_simulated("R1", at);
+        desk.worker().go_to("R1", at);
         ASSERT_TRUE(wait_until([&] { return !desk.worker().busy(); }));
     }
     void shoot() {

@@ -61,7 +61,11 @@ void GuidedPage::make_head(QVBoxLayout& box) {
     progress_->setToolTip(tr("How far reading and solving are"));
     progress_->setMinimumHeight(style::kTargetPx);
     cancel_ = make_button("calibration_cancel", "stop", tr("Cancel"),
-                          tr("Stops what runs; captures are kept"), [this] { calibration_.cancel(); });
+                          tr("Stops what runs; captures are kept. A motion under way is done, none follows."),
+                          [this] {
+                              series_.stop();
+                              calibration_.cancel();
+                          });
     auto* row = new QHBoxLayout;
     row->addWidget(progress_, 1);
     row->addWidget(cancel_);
@@ -112,12 +116,22 @@ void GuidedPage::make_capture(QVBoxLayout& box) {
                     tr("Captures whenever the robot has stood still for half a second at a new place"),
                     [this] { calibration_.set_automatic(automatic_->isChecked()); });
     automatic_->setCheckable(true);
-    inside->addLayout(make_row({capture_, automatic_}));
+    capture_all_ = make_button(
+        "calibration_all", "play", tr("Capture all"),
+        tr("Sends the robot straight to one proposed pose after the other and captures there: look "
+           "whether the ways are free"),
+        [this] {
+            said_->hide();
+            calibration_.set_automatic(false);
+            series_.start();
+        });
+    inside->addLayout(make_row({capture_all_, capture_, automatic_}));
     set_target_ =
         make_button("calibration_set_target", "target", tr("Set up the target"),
                     tr("Puts this method's target before the simulated sensor"), [this] { set_target(); });
     go_there_ = make_button("calibration_go", "robot", tr("Go there"),
-                            tr("Moves the simulated robot to the next pose"), [this] { go_there(); });
+                            tr("Moves the robot straight to the next pose: look whether the way is free"),
+                            [this] { go_there(); });
     next_ = make_text({});
     next_->setObjectName("calibration_next");
     next_words_ = make_text({});
@@ -206,12 +220,10 @@ void GuidedPage::make_verdict(QVBoxLayout& box) {
     convention_->setObjectName("calibration_convention");
     inside->addWidget(convention_);
     inside->addLayout(make_row({take_convention_}));
-    parameters_ =
-        make_table("calibration_parameters", {tr("Parameter"), tr("Value"), tr("1 sigma"), tr("Unit")},
-                   tr("What was found, and how sure it is"));
+    parameters_ = make_table("calibration_parameters", {tr("Parameter"), tr("Value"), tr("1 sigma")},
+                             tr("What was found, and how sure it is"));
     parameters_->setFixedHeight(kParametersHeight);
     parameters_->verticalHeader()->setDefaultSectionSize(26);
-    parameters_->horizontalHeader()->setStretchLastSection(true);
     inside->addWidget(parameters_);
 }
 

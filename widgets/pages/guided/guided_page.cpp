@@ -26,7 +26,7 @@ constexpr QSize kThumbnail(64, 44);
 
 }  // namespace
 
-GuidedPage::GuidedPage(Desk& desk) : desk_(desk), calibration_(desk) {
+GuidedPage::GuidedPage(Desk& desk) : desk_(desk), calibration_(desk), series_(desk, calibration_) {
     auto* box = new QVBoxLayout(this);
     box->setContentsMargins(0, 0, 0, 0);
     box->setSpacing(8);
@@ -39,6 +39,7 @@ GuidedPage::GuidedPage(Desk& desk) : desk_(desk), calibration_(desk) {
     box->addStretch(1);
     connect(&calibration_, &CalibrationDesk::changed, this, &GuidedPage::refresh);
     connect(&calibration_, &CalibrationDesk::busy_changed, this, &GuidedPage::refresh_busy);
+    connect(&series_, &CalibrationSeries::running_changed, this, &GuidedPage::refresh_busy);
     connect(&calibration_, &CalibrationDesk::looked, this, &GuidedPage::refresh_live);
     connect(&calibration_, &CalibrationDesk::still_changed, this, [this] {
         target_->set_ring(calibration_.stillness(), calibration_.automatic());
@@ -92,6 +93,7 @@ bool GuidedPage::begin(const MethodId& method, const SensorId& sensor, const Rob
 }
 
 void GuidedPage::leave() {
+    series_.stop();
     // A simulated cell gets its part back.
     if (target_set_) desk_.worker().set_sensor_parameter(calibration_.session().sensor_id(), "scene", 0);
     calibration_.set_looking(false);
@@ -117,6 +119,7 @@ void GuidedPage::showEvent(QShowEvent* event) {
 
 void GuidedPage::hideEvent(QHideEvent* event) {
     QWidget::hideEvent(event);
+    series_.stop();
     calibration_.set_looking(false);
     calibration_.set_automatic(false);
     propose(std::nullopt);
@@ -127,23 +130,9 @@ bool GuidedPage::simulated_sensor() const {
     return s && is_simulated_cell(s->driver);
 }
 
-bool GuidedPage::simulated_robot() const {
-    const RobotSetup* r = find_robot(desk_.project(), calibration_.session().robot_id());
-    return r && is_simulated_cell(r->driver);
-}
-
 std::optional<Pose> GuidedPage::flange() const {
     for (const RobotState& r : desk_.station().robots)
         if (r.id == calibration_.session().robot_id()) return r.base_from_flange;
-    return std::nullopt;
-}
-
-std::optional<Pose> GuidedPage::target_pose() const {
-    const CalibrationSession& s = calibration_.session();
-    if (const auto next = next_pose(s, calibration_.mounting())) return next->base_from_flange;
-    const SensorSetup* sensor = find_sensor(desk_.project(), s.sensor_id());
-    if (!sensor || !is_simulated_cell(sensor->driver) || !s.state().captures.empty()) return std::nullopt;
-    if (const auto start = simulated_start(s.method(), sensor->settings)) return start->base_from_flange;
     return std::nullopt;
 }
 
@@ -165,8 +154,8 @@ void GuidedPage::set_target() {
 }
 
 void GuidedPage::go_there() {
-    if (const auto pose = target_pose())
-        desk_.worker().jog_simulated(calibration_.session().robot_id(), *pose);
+    const CalibrationSession& s = calibration_.session();
+    if (const auto pose = next_place(s, desk_.project())) desk_.go_to(s.robot_id(), *pose);
 }
 
 void GuidedPage::load(bool folder) {

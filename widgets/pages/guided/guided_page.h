@@ -15,6 +15,7 @@
 #include "widgets/calibrate/method_drawing.h"
 #include "widgets/calibrate/target_view.h"
 #include "widgets/desk/calibration_desk.h"
+#include "widgets/desk/calibration_series.h"
 #include "widgets/editors/pose_editor.h"
 
 namespace seamwright {
@@ -67,14 +68,13 @@ class GuidedPage : public QWidget {
     void mark_next();  // the one key of this page that leads on
     void propose(const std::optional<Pose>& base_from_flange);
     bool simulated_sensor() const;
-    bool simulated_robot() const;
     bool stored() const;
-    std::optional<Pose> target_pose() const;  // the next pose, or a simulated robot's first
     std::optional<Pose> flange() const;
     bool done(const Expected<void>& result);
 
     Desk& desk_;
     CalibrationDesk calibration_;
+    CalibrationSeries series_;
     QLabel *title_, *who_, *stage_, *why_, *need_, *base_, *said_;
     MethodDrawing* drawing_;
     PoseEditor* nominal_;
@@ -82,7 +82,7 @@ class GuidedPage : public QWidget {
     QVBoxLayout* settings_box_;
     TargetView* target_;
     QPushButton *undo_, *redo_, *needs_, *capture_, *automatic_, *load_, *load_folder_, *set_target_,
-        *go_there_, *copy_next_;
+        *go_there_, *capture_all_, *copy_next_;
     QPushButton *detect_, *take_convention_, *verification_, *remove_, *solve_, *cancel_, *verify_, *use_,
         *keep_, *anew_;
     QLabel *convention_, *next_, *next_words_, *count_, *verdict_, *reason_, *verified_, *stands_, *compared_,

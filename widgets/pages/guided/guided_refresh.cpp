@@ -254,14 +254,16 @@ void GuidedPage::refresh_coverage() {
 void GuidedPage::refresh_next() {
     const CalibrationSession& s = calibration_.session();
     if (s.method().capture == CaptureKind::files) return propose(std::nullopt);
-    const std::optional<Pose> pose = target_pose();
+    const std::optional<Pose> pose = next_place(s, desk_.project());
     propose(isVisible() ? pose : std::nullopt);
     const RobotSetup* robot = find_robot(desk_.project(), s.robot_id());
     copy_next_->setVisible(pose.has_value());
     const bool touch = s.method().capture == CaptureKind::touch;
     set_target_->setVisible(simulated_sensor() && !touch);
     automatic_->setVisible(!touch);  // standing still is no touch
-    go_there_->setVisible(simulated_robot() && pose);
+    const bool moves = desk_.can_move(s.robot_id());
+    go_there_->setVisible(moves && pose);
+    capture_all_->setVisible(moves && !touch && (pose || s.state().captures.empty()));
     if (touch) {
         next_->setText(
             tr("Bring the tip to the sphere by hand or slowly by jogging, then capture. Turn the flange "
@@ -359,7 +361,8 @@ void GuidedPage::refresh_verdict() {
         const int decimals = std::isfinite(p.sigma) && p.sigma > 0
                                  ? std::clamp(1 - static_cast<int>(std::floor(std::log10(p.sigma))), 0, 9)
                                  : 4;
-        rows << QStringList{text(p.name), number(p.value, decimals), number(p.sigma, decimals), text(p.unit)};
+        rows << QStringList{text(p.name), number(p.value, decimals),
+                            (number(p.sigma, decimals) + " " + text(p.unit)).trimmed()};
     }
     set_rows(*parameters_, rows);
 }
@@ -444,17 +447,23 @@ void GuidedPage::refresh_use() {
 void GuidedPage::refresh_busy() {
     if (!calibration_.is_open()) return;
     const CalibrationSession& s = calibration_.session();
-    const bool busy = calibration_.busy();
+    const bool running = series_.running(), busy = calibration_.busy() || running;
     progress_->setVisible(busy);
     cancel_->setVisible(busy);
-    if (busy && progress_->format() != calibration_.doing()) {
+    if (running) {
+        const int taken = static_cast<int>(s.state().captures.size());
+        progress_->setRange(0, series_.wanted());
+        progress_->setValue(std::min(taken, series_.wanted()));
+        progress_->setFormat(tr("Capture %1 of %2").arg(taken + 1).arg(series_.wanted()));
+    } else if (busy && progress_->format() != calibration_.doing()) {
         progress_->setRange(0, 0);
         progress_->setFormat(calibration_.doing());
     }
     if (!busy) progress_->setFormat({});
     const bool connected = desk_.station().connected;
     for (QPushButton* b : {capture_, verify_}) b->setEnabled(!busy && connected);
-    for (QPushButton* b : {automatic_, set_target_, go_there_}) b->setEnabled(connected);
+    capture_all_->setEnabled(!busy && connected);
+    for (QPushButton* b : {automatic_, set_target_, go_there_}) b->setEnabled(connected && !running);
     for (QPushButton* b : {load_, load_folder_}) b->setEnabled(!busy);
     solve_->setEnabled(!busy && s.solving_captures() >= s.method().fewest);
     const bool chosen = !selected().empty();
@@ -473,14 +482,13 @@ void GuidedPage::refresh_busy() {
 void GuidedPage::mark_next() {
     const CalibrationSession& s = calibration_.session();
     const bool live = s.method().capture != CaptureKind::files && desk_.station().connected;
-    // A simulated target is set up and the robot sent there before anything can be captured.
-    const auto at = flange(), to = target_pose();
-    const bool there = !to || (at && distance_mm(*at, *to) < kWordMm);
+    // A simulated target is set up before anything can be captured; where the desk moves the robot, all captures are one
+    // deed.
     const auto take = [&](QPushButton* capture) {
         if (!live) return load_;
         if (s.method().capture == CaptureKind::touch) return capture;
         if (simulated_sensor() && !target_set_) return set_target_;
-        return simulated_robot() && !there ? go_there_ : capture;
+        return capture_all_->isVisibleTo(this) ? capture_all_ : capture;
     };
     QPushButton* next = nullptr;
     switch (s.stage()) {
@@ -501,7 +509,7 @@ void GuidedPage::mark_next() {
             break;
     }
     for (QPushButton* b :
-         {capture_, load_, set_target_, go_there_, solve_, verify_, verification_, use_, keep_}) {
+         {capture_, capture_all_, load_, set_target_, solve_, verify_, verification_, use_, keep_}) {
         if (b->property("next").toBool() == (b == next)) continue;
         b->setProperty("next", b == next);
         b->style()->unpolish(b);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "devices/registry.h"
 #include "projects/measure/measure.h"
 #include "projects/proof/checklist.h"
 #include "widgets/pages/parts/form.h"
@@ -61,10 +60,11 @@ SpotHead::SpotHead(Desk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
     words->addWidget(name_);
     words->addWidget(state_);
     go_ =
-        make_button("head_go", "shift", tr("Go there"), tr("Moves the simulated robot to the spot"), [this] {
-            if (const Spot* s = find_spot(desk_.project(), desk_.selection().spot()))
-                desk_.worker().jog_simulated(s->robot_id, s->base_from_flange);
-        });
+        make_button("head_go", "shift", tr("Go there"),
+                    tr("Moves the robot straight to the spot: look whether the way is free"), [this] {
+                        if (const Spot* s = find_spot(desk_.project(), desk_.selection().spot()))
+                            desk_.go_to(s->robot_id, s->base_from_flange);
+                    });
     deed_ = make_button("head_deed", "next", {}, tr("What comes next of this spot"),
                         [this] { emit wanted(shown_); });
     words->addLayout(make_row({deed_, go_}));
@@ -79,10 +79,9 @@ SpotHead::SpotHead(Desk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
 void SpotHead::refresh() {
     const Project& project = desk_.project();
     const Spot* s = find_spot(project, desk_.selection().spot());
-    const RobotSetup* robot = s ? find_robot(project, s->robot_id) : nullptr;
     const bool connected = desk_.station().connected, busy = desk_.worker().busy();
-    go_->setVisible(robot && is_simulated_cell(robot->driver));
-    go_->setEnabled(connected && !busy);
+    go_->setVisible(s);
+    go_->setEnabled(s && desk_.can_move(s->robot_id) && !busy);
     shown_ = next_deed(desk_, desk_.selection().spot());
     name_->setText(s ? tr("Spot %1").arg(QString::fromStdString(s->id)) : tr("No spot"));
     bool may = !busy;

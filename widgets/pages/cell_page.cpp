@@ -218,12 +218,11 @@ void CellPage::refresh() {
         rows << QStringList{QString::fromStdString(robot.id), tr("robot"),
                             QString::fromStdString(robot.driver), state};
     }
-    const std::string before = chosen();
     set_rows(*devices_, rows);
     for (int r = 0; r < devices_->rowCount(); ++r)
         devices_->item(r, 0)->setData(kSensorRole, r < static_cast<int>(p.sensors.size()));
     if (devices_->currentRow() < 0 && devices_->rowCount() > 0) devices_->setCurrentCell(0, 0);
-    if (before != chosen() || !settings_->hasFocus()) show_device();
+    show_device();
     connect_->setEnabled(desk_.is_open() && !p.sensors.empty());
     disconnect_->setEnabled(s.connected);
     part_->setText(
@@ -243,40 +242,51 @@ void CellPage::show_device() {
     for (QWidget* w : std::initializer_list<QWidget*>{driver_, form_, settings_, rename_, remove_})
         w->setEnabled(!id.empty());
     mode_row_->setVisible(!id.empty() && !sensor);
-    const QSignalBlocker quiet(driver_);
-    driver_->clear();
     QString identity;
-    if (sensor)
-        for (const SensorDriver& d : sensor_drivers())
-            driver_->addItem(QString::fromStdString(std::string(d.name)), shown(Text::chosen(d.help)));
-    else
-        for (const RobotDriver& d : robot_drivers())
-            driver_->addItem(QString::fromStdString(std::string(d.name)), shown(Text::chosen(d.help)));
-    for (int i = 0; i < driver_->count(); ++i) driver_->setItemData(i, driver_->itemData(i), Qt::ToolTipRole);
-    const auto show = [&](const auto& setup, const std::string& model) {
-        driver_->setCurrentText(QString::fromStdString(setup.driver));
-        const QString text = QString::fromStdString(setup.settings.dump(2));
-        if (settings_->toPlainText() != text) settings_->setPlainText(text);
-        show_table();
+    const auto show = [&](const auto& setup, const std::string& model, RobotMode mode) {
         identity = setup.identity.serial.empty() ? tr("never connected")
                                                  : tr("answers as %1, serial %2")
                                                        .arg(QString::fromStdString(model),
                                                             QString::fromStdString(setup.identity.serial));
+        show_setup(setup.driver, setup.settings, mode);
     };
     if (const SensorSetup* s = find_sensor(p, id); s && sensor)
-        show(*s, s->identity.vendor + " " + s->identity.model);
-    if (const RobotSetup* r = find_robot(p, id); r && !sensor) {
-        show(*r, r->identity.brand + " " + r->identity.model);
-        for (std::size_t i = 0; i < kModes.size(); ++i)
-            if (kModes[i] == r->required_mode) mode_->setCurrentIndex(static_cast<int>(i));
-    }
+        show(*s, s->identity.vendor + " " + s->identity.model, RobotMode::unknown);
+    if (const RobotSetup* r = find_robot(p, id); r && !sensor)
+        show(*r, r->identity.brand + " " + r->identity.model, r->required_mode);
     if (id.empty()) {
+        shown_setup_.clear();
         settings_->clear();
         show_table();
     }
     answers_->setText(identity);
     stripe_->refresh(sensor ? find_sensor(p, id) : nullptr);
     show_parameters();
+}
+
+// As the project has it. What was chosen or typed and is not taken over yet stays until the project has something else.
+void CellPage::show_setup(const std::string& driver, const nlohmann::json& settings, RobotMode mode) {
+    const std::string setup =
+        fmt::format("{} {} {} {} {}", sensor_chosen(), chosen(), driver, to_string(mode), settings.dump());
+    if (setup == shown_setup_) return;
+    shown_setup_ = setup;
+    {
+        const QSignalBlocker quiet(driver_);
+        driver_->clear();
+        const auto list = [&](const auto& drivers) {
+            for (const auto& d : drivers) {
+                driver_->addItem(QString::fromStdString(std::string(d.name)));
+                driver_->setItemData(driver_->count() - 1, shown(Text::chosen(d.help)), Qt::ToolTipRole);
+            }
+        };
+        sensor_chosen() ? list(sensor_drivers()) : list(robot_drivers());
+        driver_->setCurrentText(QString::fromStdString(driver));
+    }
+    for (std::size_t i = 0; i < kModes.size(); ++i)
+        if (kModes[i] == mode) mode_->setCurrentIndex(static_cast<int>(i));
+    const QString text = QString::fromStdString(settings.dump(2));
+    if (settings_->toPlainText() != text) settings_->setPlainText(text);
+    show_table();
 }
 
 // The form of the chosen driver, filled with what the text says.

@@ -28,6 +28,7 @@ class CellPage : public StepPage {
     void rename_device();
     void apply();
     void show_device();
+    void show_setup(const std::string& driver, const nlohmann::json& settings, RobotMode mode);
     void show_table();
     void judge_settings();
     void show_parameters();
@@ -51,7 +52,7 @@ class CellPage : public StepPage {
     StripePanel* stripe_;
     std::vector<ParameterEditor*> requirements_;
     const SettingTable* shown_table_ = nullptr;
-    std::string shown_parameters_;
+    std::string shown_parameters_, shown_setup_;
     std::uint64_t placed_ = 0;
 };
 

@@ -95,6 +95,7 @@ void check_table(const QTableView& table, QStringList& found) {
                            table.viewport()->width());
     const QAbstractItemModel& model = *table.model();
     for (int c = 0; c < model.columnCount(); ++c) {
+        if (table.isColumnHidden(c)) continue;
         const int has = table.columnWidth(c);
         if (table.horizontalHeader()->isVisible() && table.horizontalHeader()->sectionSizeHint(c) > has)
             found << too_small(&table, "heading " + model.headerData(c, Qt::Horizontal).toString(),

@@ -251,7 +251,7 @@ int verify(Workspace& w, const Model& m) {
             if (next_starts) {
                 if (!(from_left && put(c, piece, in_band(m, from_left, ib, nullptr, 0, p.x, p.z))) &&
                     from_right)
-                    put(c, piece + 1, in_band(m, nullptr, 0, from_right, ia, p.x, p.z));
+                    put(c, k < 0 ? piece : piece + 1, in_band(m, nullptr, 0, from_right, ia, p.x, p.z));
             } else if (from_left || from_right) {
                 put(c, piece, in_band(m, from_left, ib, from_right, ia, p.x, p.z));
             }

@@ -248,6 +248,26 @@ TEST(Filter, ASegmentBeginsWhereItsSurfaceBegins) {
     }
 }
 
+TEST(Filter, PointsBeforeAndInABurstAtTheStartBelongToTheSegmentBehindIt) {
+    Maker random(91);
+    for (int trial = 0; trial < 400; ++trial) {
+        const int burst = 1 + trial % 3;
+        Profile p;
+        for (int i = 0; i < 120; ++i) {
+            p.x_mm.push_back(0.25 * i);
+            p.z_mm.push_back(0.05 * random.normal() + (i > 60 ? 8 : 0));
+            if (i < burst && i + 2 != burst)
+                p.z_mm.back() += random.uniform(0.5, 5) * (random.chance(0.5) ? 1 : -1);
+        }
+        ASSERT_TRUE(filter_profile(p, {}));
+        for (std::size_t i = 0; i < 55; ++i) {
+            if (p.segment[i] != kOutlier) {
+                EXPECT_EQ(p.segment[i], p.segment[30]) << trial << " " << i;
+            }
+        }
+    }
+}
+
 TEST(Filter, AGapOfMissingReturnsOnOneContourIsNoJump) {
     Maker random(7);
     Profile p;

@@ -35,9 +35,11 @@ struct Workspace {
     std::vector<Node> nodes;            // one per candidate
     std::vector<int> first;             // of each line with candidates, and one past the last
     std::vector<int> path;              // candidate numbers of the cheapest sequence, rising
+    std::vector<int> longer_path;       // filter: the path with rows taken in
     std::vector<State> backward;        // filter: states seen from the other end, per element of the path
     std::vector<char> wanted;           // filter: of these, which are computed
     std::vector<int> piece;             // filter: per candidate, smooth piece or -1
+    std::vector<int> contour_of_piece;  // filter: pieces that only a gap parts have the same
     std::vector<char> vague;            // filter: accepted by vague predictions
     std::vector<int> doubtful;          // filter: the candidates that are
     std::vector<int> chosen;            // tracking: candidate number within the line, or -1

@@ -1,5 +1,7 @@
 #include "core/profile/filter.h"
 
+#include <limits>
+
 #include "core/profile/contour_sequence.h"
 #include "core/profile/no_return.h"
 
@@ -16,6 +18,7 @@ constexpr double kSharp = 1.5, kDoubt = 0.4;  // a sharp prediction's variance; 
                                               // a point that needs more is doubtful
 constexpr int kWarmUp = 10;                   // points after which the tracker has forgotten where it began
 constexpr int kUnchecked = 3;  // lines across which a smooth link is taken without looking from both sides
+constexpr double kRowShare = 0.5;       // two edges as dear as what a burst pays for one, see take_in_rows
 constexpr double kLongGapSlope = 0.03;  // uncertainty of direction across longer gaps, rad
 
 Workspace& workspace() {
@@ -32,8 +35,108 @@ double dot_across(const State& s, double dx, double dz) {
     return length > 0 ? (s.vx * dz - s.vz * dx) / length : std::sqrt(dx * dx + dz * dz);
 }
 
-double line_difference(const Workspace& w, int a, int b) {
+int line_difference(const Workspace& w, int a, int b) {
     return std::abs(w.candidates[std::size_t(b)].line - w.candidates[std::size_t(a)].line);
+}
+
+// Rows of points that the cheapest sequence leaves out. There an edge is as dear as it must be for a burst, which would
+// come and go with one each, so that a groove or a ridge of a few points, which has three, is cheaper as a row of
+// outliers. More than `lookahead` of them are no burst any more: there an edge costs kRowShare of it, and what follows
+// itself for min_points points is taken into the path.
+void take_in_rows(Workspace& w, const Model& m, int lookahead, int min_points) {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    const double edge_cost = kRowShare * m.edge_cost;
+    const int least = std::max(lookahead + 1, min_points);
+    auto& longer = w.longer_path;
+    bool any = false;
+    for (std::size_t k = 0; k + 1 < w.path.size(); ++k) {
+        if (any) longer.push_back(w.path[k]);
+        const int a = w.path[k], b = w.path[k + 1];
+        if (b - a - 1 < least) continue;
+        // As it was found, at the prices of here.
+        const double old = m.skip(b - a - 1) + (w.nodes[std::size_t(b)].link == Link::smooth ? 0
+                                                : w.nodes[std::size_t(b)].link == Link::edge ? edge_cost
+                                                                                             : m.jump_cost);
+        const Node a_node = w.nodes[std::size_t(a)];
+        w.nodes[std::size_t(a)].cost = 0;
+        double ended = 0;  // cheapest cost of ending before the present candidate, after...
+        int ended_at = a;
+        // The cheapest way to candidate c from those before it back to a, into `node`.
+        const auto reach = [&](int c, Node& node) {
+            const Candidate& point = w.candidates[std::size_t(c)];
+            Deviation best_deviation;
+            node.cost = infinite;
+            const auto put = [&](double cost, int j, Link link) {
+                if (!(cost < node.cost)) return false;
+                node.cost = cost, node.previous = j, node.link = link;
+                return true;
+            };
+            put(ended + m.jump_cost, ended_at, Link::start);
+            for (int j = c - 1; j >= std::max(a, c - m.window); --j) {
+                const Node& from = w.nodes[std::size_t(j)];
+                const double cost = from.cost + m.skip(c - j - 1);
+                const int i = point.line - w.candidates[std::size_t(j)].line;
+                if (i > m.longest_gap) break;
+                if (from.state.age >= 2) {
+                    const Deviation d = deviation(m, from.state, point.x, point.z, i);
+                    if (0.5 * d.d2 < m.outlier_cost && put(cost + 0.5 * d.d2, j, Link::smooth))
+                        best_deviation = d;
+                }
+                if (i > m.edge_window) continue;
+                const double ratio = reach_ratio(m, from.state, point.x, point.z, i);
+                // After a single point any direction goes on.
+                const double turn = from.state.age < 2 ? 0 : edge_cost;
+                if (ratio < 1) put(cost + turn + 0.6 * m.outlier_cost * ratio * ratio, j, Link::edge);
+            }
+            const State& from = w.nodes[std::size_t(node.previous)].state;
+            const int i = point.line - w.candidates[std::size_t(node.previous)].line;
+            node.calm = false;
+            node.state = node.link == Link::start ? first_point(m, point.x, point.z) : from;
+            if (node.link == Link::smooth) accept(m, node.state, best_deviation, i);
+            if (node.link == Link::edge) {
+                accept_any_direction(m, node.state, point.x, point.z, i);
+                if (from.age < 2) node.link = Link::smooth;
+            }
+            ended += m.skip_line;
+            if (node.cost < ended) ended = node.cost, ended_at = c;
+        };
+        for (int c = a + 1; c < b; ++c) reach(c, w.nodes[std::size_t(c)]);
+        Node last;
+        reach(b, last);
+        w.nodes[std::size_t(a)] = a_node;
+        int taken = 0;
+        for (int c = last.previous; c != a; c = w.nodes[std::size_t(c)].previous) ++taken;
+        if (!(last.cost < old) || taken < least) continue;
+        if (!any) longer.assign(w.path.begin(), w.path.begin() + std::ptrdiff_t(k) + 1);
+        any = true;
+        longer.resize(longer.size() + std::size_t(taken));
+        for (int c = last.previous, at = int(longer.size()) - 1; c != a;
+             c = w.nodes[std::size_t(c)].previous, --at)
+            longer[std::size_t(at)] = c;
+        w.nodes[std::size_t(b)].link = last.link;
+        w.nodes[std::size_t(b)].state = last.state;
+        w.nodes[std::size_t(b)].calm = false;
+        // The states that follow forget where they came from.
+        State state = last.state;
+        for (std::size_t q = k + 2; q < w.path.size() && q < k + 2 + kWarmUp; ++q) {
+            Node& node = w.nodes[std::size_t(w.path[q])];
+            const Candidate& point = w.candidates[std::size_t(w.path[q])];
+            const int i = line_difference(w, w.path[q - 1], w.path[q]);
+            if (node.link != Link::smooth) break;
+            if (state.age < 2) {
+                accept_any_direction(m, state, point.x, point.z, i);
+            } else {
+                const Deviation d = deviation(m, state, point.x, point.z, i);
+                if (!(0.5 * d.d2 < m.outlier_cost)) break;
+                accept(m, state, d, i);
+            }
+            node.state = state;
+            node.calm = false;
+        }
+    }
+    if (!any) return;
+    longer.push_back(w.path.back());
+    w.path.swap(longer);
 }
 
 // The same tracker along the path from its other end, where anything is to be decided: beside points that are
@@ -166,16 +269,24 @@ void settle_doubtful(Workspace& w, const Model& m) {
     constexpr double kGoodFit = 2.0;
     for (const int c : w.doubtful) {
         const Candidate& p = w.candidates[std::size_t(c)];
-        const int piece = w.piece[std::size_t(c)];
+        const auto contour_of = [&](int k) {
+            const int piece = w.piece[std::size_t(k)];
+            return piece < 0 ? -1 : w.contour_of_piece[std::size_t(piece)];
+        };
+        const int contour = contour_of(c);
         int side[2][kSide], count[2] = {0, 0};
         for (int d = 0; d < 2; ++d)
             for (int k = c + (d ? 1 : -1); k >= 0 && k < int(w.candidates.size()) && count[d] < kSide;
                  k += d ? 1 : -1) {
-                if (w.piece[std::size_t(k)] >= 0 && w.piece[std::size_t(k)] != piece) break;
+                if (contour_of(k) >= 0 && contour_of(k) != contour) break;
                 if (std::abs(w.candidates[std::size_t(k)].line - p.line) > 2 * kShortGap) break;
-                if (w.piece[std::size_t(k)] == piece && !w.vague[std::size_t(k)]) side[d][count[d]++] = k;
+                if (contour_of(k) == contour && !w.vague[std::size_t(k)]) side[d][count[d]++] = k;
             }
         if (count[0] < 3 || count[1] < 3) continue;
+        // More than a burst between them may be a groove or a ridge, of which they know nothing.
+        if (w.candidates[std::size_t(side[1][0])].line - w.candidates[std::size_t(side[0][0])].line >
+            m.window + 1)
+            continue;
         int both[2 * kSide], n = 0;
         for (int d = 0; d < 2; ++d)
             for (int k = 0; k < count[d]; ++k) both[n++] = side[d][k];
@@ -210,7 +321,9 @@ int verify(Workspace& w, const Model& m) {
         if (verdict == Verdict::doubtful) w.vague[std::size_t(c)] = 1, w.doubtful.push_back(c);
         return true;
     };
-    int piece = 0;
+    int piece = 0, contour = 0;
+    bool behind_edge = false;  // the smooth piece begins at one
+    w.contour_of_piece.assign(1, 0);
     for (int k = -1; k < n; ++k) {
         const int here = k >= 0 ? w.path[std::size_t(k)] : -1;
         const int next = k + 1 < n ? w.path[std::size_t(k) + 1] : -1;
@@ -219,17 +332,28 @@ int verify(Workspace& w, const Model& m) {
             w.piece[std::size_t(here)] = piece;
             continue;
         }
-        if (k > 0 && (w.nodes[std::size_t(w.path[std::size_t(k)])].link != Link::smooth ||
-                      line_difference(w, w.path[std::size_t(k) - 1], w.path[std::size_t(k)]) > kUnchecked))
-            ++piece;
+        if (k > 0) {
+            const bool smooth = w.nodes[std::size_t(w.path[std::size_t(k)])].link == Link::smooth;
+            contour += !smooth;
+            if (!smooth) behind_edge = w.nodes[std::size_t(w.path[std::size_t(k)])].link == Link::edge;
+            if (!smooth ||
+                line_difference(w, w.path[std::size_t(k) - 1], w.path[std::size_t(k)]) > kUnchecked) {
+                ++piece;
+                w.contour_of_piece.push_back(contour);
+            }
+        }
         const bool next_starts = next >= 0 && w.nodes[std::size_t(next)].link == Link::start;
         if (here >= 0) {
             const Candidate& p = w.candidates[std::size_t(here)];
             const bool starts = k == 0 || w.nodes[std::size_t(here)].link == Link::start;
             const State* before = starts ? nullptr : &w.nodes[std::size_t(w.path[std::size_t(k) - 1])].state;
             const State* after = next < 0 || next_starts ? nullptr : &w.backward[std::size_t(k) + 1];
+            const bool any_before = before != nullptr, any_after = after != nullptr;
             if (before && before->age < kMature) before = nullptr;
             if (after && after->age < kMature) after = nullptr;
+            // Beside a sharp edge the side beyond it says nothing, and a flank of a few points has no other.
+            if (!after && any_after && w.nodes[std::size_t(here)].link == Link::edge) before = nullptr;
+            if (!before && any_before && behind_edge && w.backward[std::size_t(k)].age == 2) after = nullptr;
             const int ib = before ? p.line - w.candidates[std::size_t(w.path[std::size_t(k) - 1])].line : 0;
             const int ia = after ? w.candidates[std::size_t(next)].line - p.line : 0;
             if (before || after)
@@ -251,7 +375,7 @@ int verify(Workspace& w, const Model& m) {
             if (next_starts) {
                 if (!(from_left && put(c, piece, in_band(m, from_left, ib, nullptr, 0, p.x, p.z))) &&
                     from_right)
-                    put(c, k < 0 ? piece : piece + 1, in_band(m, nullptr, 0, from_right, ia, p.x, p.z));
+                    put(c, k < 0 ? 0 : piece + 1, in_band(m, nullptr, 0, from_right, ia, p.x, p.z));
             } else if (from_left || from_right) {
                 put(c, piece, in_band(m, from_left, ib, from_right, ia, p.x, p.z));
             }
@@ -425,6 +549,7 @@ Expected<void> filter_profile(Profile& profile, const FilterOptions& options) {
     const Model rough(estimate_scale(w, w.path, false, options), options);
     cheapest_sequence(w, rough);
     const Model model(estimate_scale(w, w.path, true, options), options);
+    take_in_rows(w, model, options.lookahead, options.min_segment_points);
     run_backward(w, model);
     const int pieces = verify(w, model);
     settle_doubtful(w, model);

@@ -11,6 +11,8 @@
 // costs about two outliers, a new segment more than `lookahead` of them. The cheapest explanation is found in
 // one pass (dynamic programming, linear in the number of points), and checked in a second one from the other
 // end wherever the first was not plain, so that a point near an edge or a jump is judged from its own side.
+// Where more than `lookahead` points in a row are left out, a sharp edge costs half: a burst no longer explains
+// them, and a small groove or ridge has three edges.
 //
 // Noise model: independent noise of x and z per point, normal, the same over the profile; its standard
 // deviations are taken from the median of the second differences unless given. A spacing may be smaller than

@@ -268,6 +268,45 @@ TEST(Filter, PointsBeforeAndInABurstAtTheStartBelongToTheSegmentBehindIt) {
     }
 }
 
+// Seven to ten points on two flanks: more than a burst, and each side's straight knows nothing of them.
+TEST(Filter, AGrooveOrRidgeOfAFewPointsIsContour) {
+    Maker random(92);
+    int marked = 0, all = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+        const double half = random.uniform(0.9, 1.3), depth = half * random.uniform(1, 1.7);
+        const double sign = random.chance(0.5) ? 1 : -1, middle = random.uniform(14, 16);
+        Profile p;
+        for (int i = 0; i < 120; ++i) {
+            const double x = 0.25 * i, off = std::max(0., 1 - std::abs(x - middle) / half);
+            p.x_mm.push_back(x);
+            p.z_mm.push_back(0.1 * x + sign * depth * off + 0.05 * random.normal());
+        }
+        ASSERT_TRUE(filter_profile(p, {}));
+        for (std::size_t i = 0; i < p.size(); ++i)
+            if (std::abs(p.x_mm[i] - middle) < half) ++all, marked += p.segment[i] == kOutlier;
+    }
+    EXPECT_LE(marked, 0.02 * all) << all;
+}
+
+// Between two far outliers a third that lies nearer is judged by both sides of the burst, not by the last points alone.
+TEST(Filter, ANearOutlierAmongFarOnesIsMarked) {
+    Maker random(93);
+    int missed = 0;
+    constexpr int kTrials = 500;
+    for (int trial = 0; trial < kTrials; ++trial) {
+        Profile p;
+        for (int i = 0; i < 120; ++i) {
+            p.x_mm.push_back(0.25 * i);
+            p.z_mm.push_back(0.002 * 0.25 * i * i + 0.05 * random.normal());
+        }
+        for (const int i : {59, 60, 61})
+            p.z_mm[std::size_t(i)] += (random.chance(0.5) ? 1 : -1) * (i == 60 ? 0.4 : random.uniform(2, 8));
+        ASSERT_TRUE(filter_profile(p, {}));
+        missed += p.segment[60] != kOutlier;
+    }
+    EXPECT_LE(missed, 0.08 * kTrials);
+}
+
 TEST(Filter, AGapOfMissingReturnsOnOneContourIsNoJump) {
     Maker random(7);
     Profile p;

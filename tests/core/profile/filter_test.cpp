@@ -307,6 +307,38 @@ TEST(Filter, ANearOutlierAmongFarOnesIsMarked) {
     EXPECT_LE(missed, 0.08 * kTrials);
 }
 
+// A rim of radius 0.5 to 8 that turns out of sight: its last points are as far apart as dust lies off the contour.
+TEST(Filter, TheLastPointsOfARimAreContourAndDustBeforeItIsNot) {
+    Maker random(94);
+    int marked = 0, last = 0, missed = 0;
+    constexpr int kTrials = 600;
+    for (int trial = 0; trial < kTrials; ++trial) {
+        const double radius = 0.5 * std::pow(16., random.uniform(0, 1)), begin = random.uniform(14.8, 15.2);
+        const bool mirrored = random.chance(0.5), down = random.chance(0.5);
+        Profile p;
+        std::vector<std::size_t> rim;
+        std::size_t dust = 0;
+        for (int i = 0; i < 160; ++i) {
+            const double x = 0.25 * i, s = std::max(0., x - begin);
+            p.x_mm.push_back(mirrored ? -x : x);
+            p.z_mm.push_back(nan);
+            if (s > 0.99 * radius) continue;
+            p.z_mm.back() = std::sqrt(radius * radius - s * s) - radius + 0.05 * x + 0.05 * random.normal();
+            if (s > 0) rim.push_back(std::size_t(i));
+            dust = std::size_t(i) - 3;
+        }
+        p.z_mm[dust] += 3;
+        if (down)
+            for (double& z : p.z_mm) z = -z;
+        ASSERT_TRUE(filter_profile(p, {}));
+        for (const std::size_t i : rim) marked += i != dust && p.segment[i] == kOutlier;
+        last += int(rim.size());
+        missed += p.segment[dust] != kOutlier;
+    }
+    EXPECT_LE(marked, 0.02 * last) << last;
+    EXPECT_LE(missed, 0.005 * kTrials);
+}
+
 TEST(Filter, AGapOfMissingReturnsOnOneContourIsNoJump) {
     Maker random(7);
     Profile p;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdio>
 #include <map>
 
@@ -31,6 +32,33 @@ Marks marks(const Profile& p, const Spoilt& truth, const std::vector<char>& phan
     return m;
 }
 
+// What can be had at all: who knows the sheets and the noise marks what lies farther from every sheet than k sigma, with
+// the k that serves best over all profiles of a kind.
+class Ceiling {
+  public:
+    void add(const Profile& p, const std::vector<Sheet>& sheets, const SensorModel& s, const Spoilt& truth,
+             const std::vector<char>& phantom) {
+        for (std::size_t k = 0; k < p.size(); ++k) {
+            if (std::isnan(p.z_mm[k]) || phantom[k]) continue;
+            const double sigmas = distance_mm(sheets, {p.x_mm[k], p.z_mm[k]}) / s.noise;
+            for (std::size_t i = 0; i < marks_.size(); ++i) {
+                const bool marked = sigmas > band(i), wrong = truth.outlier[k] != 0;
+                Marks& m = marks_[i];
+                m.right += marked && wrong, m.invented += marked && !wrong, m.missed += !marked && wrong;
+            }
+        }
+    }
+    double f1() const {
+        double best = 0;
+        for (const Marks& m : marks_) best = std::max(best, m.f1());
+        return best;
+    }
+
+  private:
+    static double band(std::size_t i) { return 2.5 + 0.5 * double(i); }
+    std::array<Marks, 12> marks_;  // of 2.5 to 8 sigma
+};
+
 SensorModel sensor_of(Dice& dice, int condition) {
     SensorModel s = SensorModel::any(dice);
     if (condition == 0) s.grid = dice.chance(0.5) ? Grid::raw : Grid::exact;
@@ -44,13 +72,15 @@ constexpr const char* kConditions[] = {"any sensor", "interpolated x", "320 poin
 
 TEST(Joints, TheFilterMarksWhatLiesOffTheContour) {
     for (int condition = 0; condition < 3; ++condition) {
-        std::printf("\n%-24s %8s %9s %9s   %s\n", kConditions[condition], "F1", "invented", "missed",
-                    "outliers");
+        std::printf("\n%-24s %8s %9s %9s %9s   %s\n", kConditions[condition], "F1", "ceiling", "invented",
+                    "missed", "outliers");
         for (const JointMaker make : kJoints) {
             Dice dice(seed_of(101));
             Marks all;
+            Ceiling ceiling;
             const char* name = "";
-            for (int i = 0; i < trials_of(60); ++i) {
+            // Of few points there are few outliers: as many profiles that chance is a third of a hundredth.
+            for (int i = 0; i < trials_of(condition == 2 ? 300 : 60); ++i) {
                 const Joint joint = make(dice);
                 name = joint.name;
                 const SensorModel sensor = sensor_of(dice, condition);
@@ -63,6 +93,7 @@ TEST(Joints, TheFilterMarksWhatLiesOffTheContour) {
                 for (std::size_t k = 0; k < p.size() && sensor.grid == Grid::resampled; ++k)
                     phantom[k] = !truth.outlier[k] && std::isfinite(p.z_mm[k]) &&
                                  distance_mm(sheets, {p.x_mm[k], p.z_mm[k]}) > 4.5 * sensor.noise;
+                ceiling.add(p, sheets, sensor, truth, phantom);
                 if (dice.chance(0.3))
                     for (double& z : p.z_mm) z = -z;
                 if (dice.chance(0.5))
@@ -76,10 +107,9 @@ TEST(Joints, TheFilterMarksWhatLiesOffTheContour) {
                         name, i, m.invented, m.missed, m.right + m.missed, sensor.points, sensor.pitch,
                         sensor.noise, int(sensor.grid), sensor.missing);
             }
-            std::printf("%-24s %8.4f %9d %9d   %d\n", name, all.f1(), all.invented, all.missed,
-                        all.right + all.missed);
-            // Of rounded rims a few pitches wide the last points lie no nearer to the contour than dust does.
-            EXPECT_GE(all.f1(), condition < 2 ? 0.99 : 0.97) << name << ", " << kConditions[condition];
+            std::printf("%-24s %8.4f %9.4f %9d %9d   %d\n", name, all.f1(), ceiling.f1(), all.invented,
+                        all.missed, all.right + all.missed);
+            EXPECT_GE(all.f1(), ceiling.f1() - 0.01) << name << ", " << kConditions[condition];
         }
     }
 }

@@ -216,13 +216,15 @@ ContourMatcher::Impl::Held ContourMatcher::Impl::held(const Finish& found, const
         beside.pose = moved_along(found.pose, twist, i * step);
         cost[i + kSide] = support(beside, sigma, stride).contradicted * stride;
     }
-    const double least = *std::min_element(cost.begin(), cost.end());
+    const auto best = std::min_element(cost.begin(), cost.end());
+    const double least = *best;
     // Of a straight line the template's own waves tell a place: their part in the cost scatters by this.
     const double waves = std::sqrt(8 * here.on * fit_variance * model.sigma_mm() * model.sigma_mm()) / sigma;
     const double told = least + telling_difference(here) + 3 * waves;
     Held result;
-    result.held = *std::max_element(cost.begin(), cost.begin() + kSide) > told &&
-                  *std::max_element(cost.begin() + kSide + 1, cost.end()) > told;
+    // To either side of the likeliest place: of one at the rim of what was looked at nobody knows whether it goes on.
+    result.held = best != cost.begin() && *std::max_element(cost.begin(), best) > told &&
+                  *std::max_element(best, cost.end()) > told;
     // Mean and variance of the place along the direction, all of the step alike likely before.
     double sum = 0, first = 0, second = 0;
     for (int i = -kSide; i <= kSide; ++i) {

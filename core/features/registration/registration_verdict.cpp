@@ -259,14 +259,20 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
     // Where the slopes leave it open, what the points say about a small motion along the direction decides.
     const bool open = weak.unsure || !directions[0].determined;
     const bool thin = jump_matches.empty() && weak.seen < kFewPoints;
+    const Held ends = held_by_ends(weak.twist);
     Held place;
-    if (open || thin) {
-        place = held_by_ends(weak.twist);
-        if (!place.held) place = held(found, rating, sigma, weak.twist);
-    }
+    if (open || thin) place = ends.held ? ends : held(found, rating, sigma, weak.twist);
     const bool sliding = (open || thin) && !place.held;
     place.held = place.held && open;
-    if (place.held) pose = moved_along(pose, weak.twist, place.shift);
+    if (place.held) {
+        pose = moved_along(pose, weak.twist, place.shift);
+    } else if (ends.held && !open) {
+        // The finish takes the waves of the template's own noise for slopes and may rest in one of them, off the ends that
+        // know better: slopes count here for what they tell beyond that noise.
+        const double told = 1 / ends.variance,
+                     slopes = weak.seen / std::max(found.sigma * found.sigma, 1e-10) - told;
+        pose = moved_along(pose, weak.twist, ends.shift * told / (told + std::max(slopes, 0.0)));
+    }
     const Eigen::Vector2d turned = set_pose();
     const Eigen::Matrix2d r =
         (Eigen::Matrix2d() << pose.cosine, -pose.sine, pose.sine, pose.cosine).finished();

@@ -2632,9 +2632,12 @@
         <source>of today</source>
         <translation>von heute</translation>
     </message>
-    <message>
-        <source>%1 days old</source>
-        <translation>%1 Tage alt</translation>
+    <message numerus="yes">
+        <source>%n day(s) old</source>
+        <translation>
+            <numerusform>%n Tag alt</numerusform>
+            <numerusform>%n Tage alt</numerusform>
+        </translation>
     </message>
     <message>
         <source>From pixels to millimetres on the flange. Each sensor uses one calibration; the others stay selectable.</source>
@@ -3629,17 +3632,26 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <source>used</source>
         <translation>benutzt</translation>
     </message>
-    <message>
-        <source>%1 captures, at least %2 are needed</source>
-        <translation>%1 Aufnahmen, mindestens %2 werden gebraucht</translation>
+    <message numerus="yes">
+        <source>%n capture(s), at least %1 are needed</source>
+        <translation>
+            <numerusform>%n Aufnahme, mindestens %1 werden gebraucht</numerusform>
+            <numerusform>%n Aufnahmen, mindestens %1 werden gebraucht</numerusform>
+        </translation>
     </message>
-    <message>
-        <source>%1 captures, %2 are better</source>
-        <translation>%1 Aufnahmen, %2 sind besser</translation>
+    <message numerus="yes">
+        <source>%n capture(s), %1 are better</source>
+        <translation>
+            <numerusform>%n Aufnahme, %1 sind besser</numerusform>
+            <numerusform>%n Aufnahmen, %1 sind besser</numerusform>
+        </translation>
     </message>
-    <message>
-        <source>%1 captures</source>
-        <translation>%1 Aufnahmen</translation>
+    <message numerus="yes">
+        <source>%n capture(s)</source>
+        <translation>
+            <numerusform>%n Aufnahme</numerusform>
+            <numerusform>%n Aufnahmen</numerusform>
+        </translation>
     </message>
     <message>
         <source>Jog the sensor until the target is outlined, then capture. The next poses follow from the first one.</source>
@@ -6024,9 +6036,12 @@ ausgelassen</translation>
         <source>Regions (%1)</source>
         <translation>Korrekturbereiche (%1)</translation>
     </message>
-    <message>
-        <source>%1 spots</source>
-        <translation>%1 Messstellen</translation>
+    <message numerus="yes">
+        <source>%n spot(s)</source>
+        <translation>
+            <numerusform>%n Messstelle</numerusform>
+            <numerusform>%n Messstellen</numerusform>
+        </translation>
     </message>
     <message>
         <source>from the drawing</source>

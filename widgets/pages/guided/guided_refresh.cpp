@@ -229,10 +229,10 @@ void GuidedPage::refresh_table() {
     table_->setColumnHidden(2, s.solution() && !any(&PoseRow::deg));
     table_->setColumnHidden(3, !any(&PoseRow::rms_px));
     const int n = s.solving_captures();
-    count_->setText(n < s.method().fewest
-                        ? tr("%1 captures, at least %2 are needed").arg(n).arg(s.method().fewest)
-                    : n < s.method().advised ? tr("%1 captures, %2 are better").arg(n).arg(s.method().advised)
-                                             : tr("%1 captures").arg(n));
+    count_->setText(
+        n < s.method().fewest    ? tr("%n capture(s), at least %1 are needed", "", n).arg(s.method().fewest)
+        : n < s.method().advised ? tr("%n capture(s), %1 are better", "", n).arg(s.method().advised)
+                                 : tr("%n capture(s)", "", n));
 }
 
 void GuidedPage::refresh_coverage() {

@@ -76,7 +76,8 @@ void SpotTree::refresh() {
     }
     auto* regions = new QTreeWidgetItem(this, {tr("Regions (%1)").arg(p.regions.size()), {}});
     for (const Region& r : p.regions) {
-        auto* item = make(regions, "region", r.id, owned(r.type_id, tr("%1 spots").arg(r.spot_ids.size())));
+        auto* item = make(regions, "region", r.id,
+                          owned(r.type_id, tr("%n spot(s)", "", static_cast<int>(r.spot_ids.size()))));
         for (const std::string& id : r.spot_ids)
             if (const Spot* s = find_spot(p, id)) make(item, "spot", id, state_of(*s));
         if (region_current && r.id == desk_.selection().region()) current = item;

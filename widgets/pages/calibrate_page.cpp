@@ -18,7 +18,8 @@ QString age_of(const std::string& utc) {
     const QDateTime at = QDateTime::fromString(QString::fromStdString(utc), Qt::ISODateWithMs);
     if (!at.isValid()) return CalibratePage::tr("of unknown age");
     const auto days = at.daysTo(QDateTime::currentDateTimeUtc());
-    return days == 0 ? CalibratePage::tr("of today") : CalibratePage::tr("%n day(s) old", "", static_cast<int>(days));
+    return days == 0 ? CalibratePage::tr("of today")
+                     : CalibratePage::tr("%n day(s) old", "", static_cast<int>(days));
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ namespace {
 enum class Concern {
     setup,      // nothing by itself: the run says what it cannot do
     measuring,  // how the robot moves while it measures
+    passing,    // where it is exposed in motion
     push        // what it does afterwards in the frames
 };
 
@@ -130,17 +131,21 @@ void check_sensor(const Project& project, const SensorSetup& sensor, Findings& f
 }
 
 // The telegram of the robot's arrival, our answer and the camera's command take tens of milliseconds, each time others: at
-// 100 mm/s millimetres of travel, which no jitter window covers. A device of ours knows its own place.
+// 100 mm/s millimetres of travel, which no jitter window covers unless it was measured so (measure_trigger.h sets the latency
+// and the spots' jitter). A device of ours knows its own place.
 void check_trigger(const Project& project, const Spot& spot, const Text& where, Findings& findings) {
     const SensorSetup* sensor = find_sensor(project, spot.sensor_id);
     const RobotSetup* robot = find_robot(project, spot.robot_id);
     if (!sensor || !robot || is_own_device(sensor->driver) || is_own_device(robot->driver)) return;
+    if (spot.enabled) findings.concern(Concern::passing);
     findings.unless(
-        spot.stop_at_trigger || hardware_triggered(*sensor), where,
+        spot.stop_at_trigger || hardware_triggered(*sensor) || robot->trigger_latency_ms != 0, where,
         Text(
             "its sensor {} is triggered by software while the robot passes: where it is exposed is not known",
             sensor->id),
-        "wire the robot's output to the sensor and set \"hardware_trigger\", or stand still at the trigger");
+        "wire the robot's output to the sensor and set \"hardware_trigger\", stand still at the trigger, or "
+        "measure it "
+        "(measure-trigger)");
 }
 
 void check_spot(const Project& project, const Spot& spot, Findings& findings) {
@@ -298,10 +303,11 @@ void check_panel_job(const Project& project, const PanelJob& job, Findings& find
 }
 
 // Those that a run must not begin with.
-std::vector<Error> of_motion(Findings&& findings, bool push) {
+std::vector<Error> of_motion(Findings&& findings, bool push, bool passes = true) {
     std::vector<Error> list;
     for (auto& [concern, error] : findings.list)
-        if (concern == Concern::measuring || (push && concern == Concern::push))
+        if (concern == Concern::measuring || (passes && concern == Concern::passing) ||
+            (push && concern == Concern::push))
             list.push_back(std::move(error));
     return list;
 }
@@ -319,6 +325,12 @@ std::vector<Error> motion_findings(const Project& project, bool push) {
     for (const Spot& spot : project.spots) check_spot(project, spot, findings);
     for (const Region& region : project.regions) check_region(project, region, findings);
     return of_motion(std::move(findings), push);
+}
+
+std::vector<Error> standing_findings(const Project& project) {
+    Findings findings;
+    for (const Spot& spot : project.spots) check_spot(project, spot, findings);
+    return of_motion(std::move(findings), false, false);
 }
 
 std::vector<Error> motion_findings(const Project& project, const PanelJob& job, bool push) {

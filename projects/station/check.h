@@ -14,6 +14,8 @@ std::vector<Error> check(const Project& project);
 // frames of the regions. No run begins while there is one. The second: of a panel job.
 std::vector<Error> motion_findings(const Project& project, bool push);
 std::vector<Error> motion_findings(const Project& project, const PanelJob& job, bool push);
+// What of them keeps a robot from its spots where it stands at each; it says nothing of passing them.
+std::vector<Error> standing_findings(const Project& project);
 // called_type(), refused too where the project of that type has such findings or no enabled spot.
 Expected<std::string> runnable_type(const Project& project, const std::string& id_or_number, bool push);
 // The first of them, which says how many more there are.

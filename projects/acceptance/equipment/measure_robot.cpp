@@ -263,7 +263,7 @@ Expected<MeasuredRobot> measure_robot(Station& station, const MeasureRobotOption
         return usage_error(Text("{} profiles a return", options.profiles), "robot study", "give 2 to 100");
     const Project setup = station.project();
     SEAM_TRY(auto spots, spots_of(setup, options.spot_ids));
-    SEAM_OK(none_of_motion(motion_findings(setup, false)));
+    SEAM_OK(none_of_motion(standing_findings(setup)));
     RobotReturns returns;
     returns.robot_id = spots.front()->robot_id;
     returns.replaced_covariance = find_robot(setup, returns.robot_id)->arrival_covariance;

@@ -144,6 +144,10 @@ TEST(Check, NoSoftwareTriggerInMotion) {
     for (RobotSetup& r : project.robots) r.driver = "kuka-eki";
     EXPECT_EQ(refused(), spots);
     EXPECT_THAT(motion_findings(project, false).front().sentence(), testing::HasSubstr("hardware_trigger"));
+    EXPECT_EQ(standing_findings(project).size(), 0u) << "nothing is measured in passing";
+    project.robots[0].trigger_latency_ms = 14;
+    EXPECT_EQ(refused(), 0u) << "measured";
+    project.robots[0].trigger_latency_ms = 0;
     project.spots[0].stop_at_trigger = true;
     EXPECT_EQ(refused(), spots - 1);
     for (SensorSetup& s : project.sensors) s.settings["hardware_trigger"] = true;

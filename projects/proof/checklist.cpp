@@ -359,9 +359,23 @@ nlohmann::json essence(const RobotSetup& robot) {
 }
 nlohmann::json essence(const Calibration* calibration) {
     if (!calibration) return {};
-    Calibration c = *calibration;
-    c.raw = c.result = nlohmann::json::object();
-    return to_json_document(c);
+    // All but the data it was solved from and what was reported, which are megabytes: asked for every spot with every edit.
+    const Calibration& c = *calibration;
+    return to_json_document(Calibration{.id = c.id,
+                                        .method = c.method,
+                                        .sensor_id = c.sensor_id,
+                                        .robot_id = c.robot_id,
+                                        .sensor_identity = c.sensor_identity,
+                                        .robot_identity = c.robot_identity,
+                                        .created_utc = c.created_utc,
+                                        .source = c.source,
+                                        .model = c.model,
+                                        .flange_from_sensor = c.flange_from_sensor,
+                                        .covariance = c.covariance,
+                                        .scale_sigma = c.scale_sigma,
+                                        .shear_sigma = c.shear_sigma,
+                                        .verdict = c.verdict,
+                                        .nozzle = c.nozzle});
 }
 
 template <class T>

@@ -135,6 +135,18 @@ void find_jump(Rows points, std::span<const DriftChannel> channels, const DriftC
     }
 }
 
+// Knocked, the reference stands beside its place until somebody has looked.
+bool stands(Rows window, const Fit& step) {
+    const auto mean = [&](Rows rows) {
+        double sum = 0;
+        for (const auto& row : rows) sum += row[step.direction];
+        return sum / static_cast<double>(rows.size());
+    };
+    const double moved =
+        mean(window.last(std::min(step.n, kStepStands))) - mean(window.first(window.size() - step.n));
+    return moved / step.amplitude_mm > 0.5;
+}
+
 // Whether something changed within the window, and then what.
 void find_change(Rows points, std::span<const DriftChannel> channels, const DriftChartOptions& o,
                  DriftJudgement& r) {
@@ -159,7 +171,7 @@ void find_change(Rows points, std::span<const DriftChannel> channels, const Drif
             if (fit.sum > best.sum) best = fit;
         }
     const bool surely =
-        step.n >= 3 && step.n <= longest &&
+        step.n >= 3 && step.n <= longest && stands(window, step) &&
         step.largest > t_quantile(o.degrees, 1 - o.step_chance / (2 * m * static_cast<double>(kDriftWindow)));
     const bool is_step = step.sum - drift.sum > kStepTold, is_drift = drift.sum - step.sum > kDriftTold;
     const Fit& told = is_step ? step : drift;

@@ -14,7 +14,9 @@
 // a third of sigma a point is named within 20 points.
 // Step or drift. All shapes g_n,L(i) = min(i, L) / L, i = 1 ... n, are fitted: L = 1 is a step, L >= 8 a drift, whether it
 // goes on (n <= L) or has come to rest. A drift is told where it explains more by kDriftTold in the sum of u_d^2 (likelihood
-// 20 : 1), a step by kStepTold (400 : 1, since it stops a line) and where its amplitude is significant at step_chance too; else
+// 20 : 1), a step by kStepTold (400 : 1, since it stops a line) and where its amplitude is significant at step_chance too and
+// still stands: the mean of the newest kStepStands points lies nearer to it than to the level before, as what wandered away and
+// came back within the window does not; else
 // the change is `unclear`, as one of three sigma is for long.
 // Level: EWMA (ewma.h, lambda kDriftLambda) with the lag of a named drift added.
 //     slope (1 - lambda) / lambda
@@ -33,6 +35,7 @@ namespace seamwright {
 
 inline constexpr int kDriftLearnPoints = 20;
 inline constexpr std::size_t kDriftWindow = 60, kDriftBefore = 8;
+inline constexpr std::size_t kStepStands = 4;
 inline constexpr double kDriftTold = 6, kStepTold = 12, kDriftLambda = 0.3;
 
 enum class DriftVerdict {

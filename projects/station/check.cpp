@@ -130,13 +130,24 @@ void check_sensor(const Project& project, const SensorSetup& sensor, Findings& f
     findings.add(where, Text("its calibration \"{}\" is not in the project", sensor.calibration_id));
 }
 
+bool has_trigger_input(const std::string& driver) {
+    const auto& drivers = sensor_drivers();
+    const auto known =
+        std::find_if(drivers.begin(), drivers.end(), [&](const auto& d) { return d.name == driver; });
+    if (known == drivers.end()) return false;
+    const SettingTable& settings = known->settings();
+    return std::any_of(settings.begin(), settings.end(),
+                       [](const SettingInfo& s) { return s.name == "hardware_trigger"; });
+}
+
 // The telegram of the robot's arrival, our answer and the camera's command take tens of milliseconds, each time others: at
 // 100 mm/s millimetres of travel, which no jitter window covers unless it was measured so (measure_trigger.h sets the latency
 // and the spots' jitter). A device of ours knows its own place.
+// Only of sensors that a wire can fire: what a file or a session delivers was exposed where it says.
 void check_trigger(const Project& project, const Spot& spot, const Text& where, Findings& findings) {
     const SensorSetup* sensor = find_sensor(project, spot.sensor_id);
     const RobotSetup* robot = find_robot(project, spot.robot_id);
-    if (!sensor || !robot || is_own_device(sensor->driver) || is_own_device(robot->driver)) return;
+    if (!sensor || !robot || !has_trigger_input(sensor->driver) || is_own_device(robot->driver)) return;
     if (spot.enabled) findings.concern(Concern::passing);
     findings.unless(
         spot.stop_at_trigger || hardware_triggered(*sensor) || robot->trigger_latency_ms != 0, where,

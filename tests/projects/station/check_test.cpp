@@ -139,7 +139,9 @@ TEST(Check, NoSoftwareTriggerInMotion) {
     ASSERT_FALSE(project.spots[0].stop_at_trigger);
     const auto refused = [&] { return motion_findings(project, false).size(); };
     const std::size_t spots = project.spots.size();
+    EXPECT_EQ(refused(), 0u) << "a sensor that no wire can fire";
     for (SensorSetup& s : project.sensors) s.driver = "genicam";
+    for (RobotSetup& r : project.robots) r.driver = "simulated";
     EXPECT_EQ(refused(), 0u) << "the robot is ours";
     for (RobotSetup& r : project.robots) r.driver = "kuka-eki";
     EXPECT_EQ(refused(), spots);

@@ -125,7 +125,7 @@ void GuidedPage::make_capture(QVBoxLayout& box) {
             calibration_.set_automatic(false);
             series_.start();
         });
-    inside->addLayout(make_row({capture_all_, capture_, automatic_}));
+    inside->addLayout(make_row({capture_all_, capture_}));
     set_target_ =
         make_button("calibration_set_target", "target", tr("Set up the target"),
                     tr("Puts this method's target before the simulated sensor"), [this] { set_target(); });
@@ -140,7 +140,7 @@ void GuidedPage::make_capture(QVBoxLayout& box) {
                     [this] { QGuiApplication::clipboard()->setText(next_->property("pose").toString()); });
     inside->addWidget(next_);
     inside->addWidget(next_words_);
-    inside->addLayout(make_row({copy_next_, set_target_, go_there_}));
+    inside->addLayout(make_row({copy_next_, set_target_, go_there_, automatic_}));
     load_ = make_button("calibration_load", "import", tr("Load from files"),
                         tr("Takes captures from files instead of the live sensor"), [this] { load(false); });
     load_folder_ = make_button("calibration_load_folder", "open", tr("Load images"),

@@ -159,6 +159,7 @@ class DeskPerson {
     void picture(const QString& name) const {
         QTest::qWait(150);
         const FreezeWatch::Pause pause(watch_);
+        QApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);  // of a text that has just changed
         std::filesystem::create_directories(SEAMWRIGHT_SCREENS);
         EXPECT_TRUE(window_.grab().save(QString(SEAMWRIGHT_SCREENS) + "/way_" + name + ".png"));
         for (const QString& fault : faults_ ? faults_() : QStringList())

@@ -103,7 +103,8 @@ std::optional<SimulatedStart> simulated_start(const CalibrationMethod& method,
 std::optional<Pose> next_place(const CalibrationSession& session, const Project& project) {
     if (const auto next = next_pose(session, known_mounting(session, project))) return next->base_from_flange;
     const SensorSetup* sensor = find_sensor(project, session.sensor_id());
-    if (!session.state().captures.empty() || !sensor || !is_simulated_cell(sensor->driver)) return std::nullopt;
+    if (!session.state().captures.empty() || !sensor || !is_simulated_cell(sensor->driver))
+        return std::nullopt;
     const auto start = simulated_start(session.method(), sensor->settings);
     return start ? std::optional(start->base_from_flange) : std::nullopt;
 }

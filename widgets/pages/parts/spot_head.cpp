@@ -59,12 +59,11 @@ SpotHead::SpotHead(Desk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
     state_->setObjectName("head_state");
     words->addWidget(name_);
     words->addWidget(state_);
-    go_ =
-        make_button("head_go", "shift", tr("Go there"),
-                    tr("Moves the robot straight to the spot: look whether the way is free"), [this] {
-                        if (const Spot* s = find_spot(desk_.project(), desk_.selection().spot()))
-                            desk_.go_to(s->robot_id, s->base_from_flange);
-                    });
+    go_ = make_button("head_go", "shift", tr("Go there"),
+                      tr("Moves the robot straight to the spot: look whether the way is free"), [this] {
+                          if (const Spot* s = find_spot(desk_.project(), desk_.selection().spot()))
+                              desk_.go_to(s->robot_id, s->base_from_flange);
+                      });
     deed_ = make_button("head_deed", "next", {}, tr("What comes next of this spot"),
                         [this] { emit wanted(shown_); });
     words->addLayout(make_row({deed_, go_}));

@@ -120,13 +120,13 @@ Desk::Desk(QObject* parent) : QObject(parent), worker_(live_) {
     });
     connect(&worker_, &StationWorker::state_changed, this, [this](std::shared_ptr<const StationState> state) {
         const bool changes = state->connected != state_->connected;
+        if (state->connection != state_->connection || !state->connected) attended_.clear();
         const bool healthier = troubles(*state) != troubles(*state_);
         state_ = std::move(state);
         if (healthier && !changes) derive();
         // Connected anew, with a robot more, is connected before and after.
         if (state_->connected) take_identities(*state_);
         if (changes) {
-            attended_.clear();
             note(EventKind::device, "studio",
                  state_->connected ? "devices connected" : "devices disconnected");
             set_recipes();

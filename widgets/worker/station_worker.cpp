@@ -110,6 +110,7 @@ void StationWorker::connect_devices() {
             connect_trouble_ = connected.error().text();
             emit failed(shown_error(tr("The devices were not connected."), connected.error()));
         } else {
+            ++connection_;
             // A simulated robot that stands nowhere yet goes to the first spot, so that there is something to
             // see; a real one is never moved from here.
             for (const RobotSetup& setup : station.project().robots) {
@@ -320,6 +321,7 @@ void StationWorker::set_sensor_parameter(const std::string& sensor_id, const std
 void StationWorker::publish(Station& station) {
     auto state = std::make_shared<StationState>();
     state->connected = station.connected();
+    state->connection = connection_;
     state->asked = Clock::now();
     state->trouble = connect_trouble_;
     if (live_) sensors_ = live_->states();

@@ -47,6 +47,7 @@ struct RobotState {
 
 struct StationState {
     bool connected = false;
+    int connection = 0;  // how often the devices were connected: another number, other links
     std::vector<SensorState> sensors;
     std::vector<RobotState> robots;
     Text trouble;                                 // of the last attempt to connect
@@ -82,7 +83,7 @@ class StationWorker : public QObject {
     void disconnect_devices();
     // Everything that the devices deliver goes into this recording too (nullptr: no more); they connect
     // anew, without a recorder only where they are connected.
-    void record_to(std::shared_ptr<Recorder> recorder);
+    void record_to(const std::shared_ptr<Recorder>& recorder);
     // `part_type`: of the part that stands there; empty where the project has no types.
     void measure(const std::string& part_id, bool push, bool keep_images, const std::string& part_type = {});
     void zero_shift(int runs, const std::string& part_type = {});
@@ -192,6 +193,7 @@ class StationWorker : public QObject {
     std::vector<SensorState> sensors_;  // as last seen
     std::optional<Station> station_;
     Text connect_trouble_;
+    int connection_ = 0;
     std::jthread thread_;
 };
 

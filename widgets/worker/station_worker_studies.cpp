@@ -101,7 +101,7 @@ void StationWorker::confirm(const std::string& spot_id) {
     });
 }
 
-void StationWorker::record_to(std::shared_ptr<Recorder> recorder) {
+void StationWorker::record_to(const std::shared_ptr<Recorder>& recorder) {
     post(tr("Recording"), [=, this](Station& station, const std::stop_token&) {
         const bool anew = recorder || station.connected();
         station.record_to(recorder);

@@ -124,6 +124,23 @@ class Teacher {
         }
     }
 
+    // The part that stands there, on the page that measures: what would be written is shown, and pushed by its button.
+    void push(const char* picture) {
+        const auto asked = [&] {
+            auto* confirm = me_.window().findChild<QWidget*>("confirm");
+            return confirm && confirm->isVisible();
+        };
+        me_.click("measure_push");
+        ASSERT_TRUE(me_.wait([&] { return asked() || desk_.worker().busy(); }));
+        ASSERT_TRUE(me_.wait([&] { return asked() || !desk_.worker().busy(); }));
+        ASSERT_TRUE(asked()) << me_.text_of("run_verdict").toStdString() << " "
+                             << me_.text_of("gate").toStdString();
+        me_.picture(picture);
+        me_.click("push");
+        ASSERT_TRUE(me_.wait([&] { return !desk_.worker().busy(); }));
+        QTest::qWait(100);
+    }
+
   private:
     std::string id(std::size_t k) const { return desk_.project().spots.at(k).id; }
     void choose(std::size_t k) {

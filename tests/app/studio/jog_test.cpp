@@ -137,6 +137,17 @@ TEST_F(Jogging, ARealRobotMovesOnlyWhenSomebodyStandsBesideIt) {
         << me->find<QLabel>("jog_message")->text().toStdString();
     EXPECT_LT((settled().translation() - before.translation() - Eigen::Vector3d(1, 0, 0)).norm(), 0.02);
     picture("jog_real");
+    // Connected anew without having been disconnected: the next robot there may be another.
+    studio->window().show_step(Step::cell);
+    me->click("connect");
+    ASSERT_TRUE(me->wait([&] { return !consent->isChecked(); })) << "asked again after every connection";
+    ASSERT_TRUE(me->wait([&] { return !desk().worker().busy() && place(); }));
+    EXPECT_FALSE(key("jog_Xplus")->isEnabled());
+    // What was asked to go there meanwhile does not, and says what is missing.
+    const Pose there = *place();
+    EXPECT_FALSE(desk().go_to(desk().project().robots[0].id, before));
+    ASSERT_TRUE(me->wait([&] { return me->window().findChild<QLabel*>("jog_asked")->isVisible(); }));
+    EXPECT_LT(distance_mm(settled(), there), 1e-6);
     studio->window().show_step(Step::cell);
     me->click("disconnect");
     ASSERT_TRUE(me->wait([&] { return !desk().station().connected; }));

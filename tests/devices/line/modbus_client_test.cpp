@@ -194,6 +194,7 @@ TEST_F(ModbusClient, ComesBackAfterThePlc) {
     EXPECT_TRUE(soon([&] { return plc->word(1004) == 1 && plc->word(1011) == 1; }))
         << "the result waits for it";
     EXPECT_EQ(plc->word(1023), 1000);
+    EXPECT_TRUE(soon([&] { return link->connected(); })) << "the words are there a moment before it says so";
     const std::string said = notices();
     EXPECT_THAT(said, HasSubstr("does not answer"));
     EXPECT_THAT(said, HasSubstr("answers again"));

@@ -9,8 +9,8 @@
 #include <cerrno>
 #include <ctime>
 #include <optional>
-#include <regex>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace seamwright {
@@ -27,6 +27,22 @@ std::string holder_line() {
                        since);
 }
 
+// As holder_line() writes it: NAME, process NUMBER on HOST, since DATE.
+bool is_holder(std::string_view line) {
+    const auto parts = [&](std::string_view before) {  // what stands before, and takes it off
+        const std::size_t at = line.find(before);
+        const std::string_view part = line.substr(0, at);
+        line.remove_prefix(at == line.npos ? line.size() : at + before.size());
+        return at == line.npos ? std::string_view("\n") : part;
+    };
+    const std::string_view name = parts(", process "), number = parts(" on "), host = parts(", since ");
+    const auto only = [](std::string_view text, std::string_view of) {
+        return !text.empty() && text.find_first_not_of(of) == text.npos;
+    };
+    return !name.empty() && name.find_first_of(",\n") == name.npos && only(number, "0123456789") &&
+           host.find_first_of(",\n") == host.npos && only(line, "0123456789-: ");
+}
+
 // What stands in a lock file of ours; nullopt: the file is somebody's who keeps something else in it.
 std::optional<std::string> read_holder(int fd) {
     char text[512];
@@ -34,8 +50,7 @@ std::optional<std::string> read_holder(int fd) {
     if (length == 0) return "another program";  // which has just made it, or had no room on the disk
     if (length < 0) return std::nullopt;
     std::string line(text, static_cast<std::size_t>(length));
-    static const std::regex ours("[^,\n]+, process [0-9]+ on [^,\n]*, since [-0-9: ]+");
-    if (!std::regex_match(line, ours)) return std::nullopt;
+    if (!is_holder(line)) return std::nullopt;
     return line;
 }
 

@@ -10,6 +10,7 @@
 #include "core/correction/travel.h"
 #include "core/features/kinds/feature_registry.h"
 #include "core/features/registration/taught_stripe.h"
+#include "projects/measure/reference_feature.h"
 
 namespace seamwright {
 namespace {
@@ -136,16 +137,6 @@ const Spot* find_spot(const Project& project, const std::string& id) {
 }
 
 namespace {
-
-// The spot's feature in its reference profile; nullopt where there is none.
-std::optional<Feature> feature_at_reference(const Spot& spot) {
-    if (spot.reference_profile.size() == 0) return std::nullopt;
-    const auto finder = make_feature_finder(spot.feature);
-    if (!finder) return std::nullopt;
-    Feature found = (*finder)->find(spot.reference_profile);
-    if (found.status != FeatureStatus::ok || !found.covariance_mm2.allFinite()) return std::nullopt;
-    return found;
-}
 
 // The way in the trigger's latency; 0 where the robot stands at the trigger.
 double latency_travel_mm(const Spot& spot, const RobotSetup& robot) {
@@ -467,11 +458,6 @@ CorrectionOptions planned_options(const Project& project, const Region& region) 
     if (concerns(project, region, watch.drifts, device_id))
         state_drift(watch.drifts, device_id, sigma_mm, options);
     return options;
-}
-
-int points_at_reference(const Spot& spot) {
-    const std::optional<Feature> found = feature_at_reference(spot);
-    return found ? found->points_used : 0;
 }
 
 double travel_window_mm(const Spot& spot) {

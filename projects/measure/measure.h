@@ -50,9 +50,6 @@ SpotObservation observation(const Spot& spot, const Pose& base_from_workobject,
 // calibration are left out, as they are in a run.
 std::vector<SpotObservation> planned_observations(const Project& project, const Region& region);
 
-// Points that the spot's feature rests on in its reference profile; 0 without either.
-int points_at_reference(const Spot& spot);
-
 // Half the window in which a spot's trigger may come (add_travel() of core/correction/travel.h): the contour
 // stands still over it as taught, not as displaced. 0 where the robot stops.
 double travel_window_mm(const Spot& spot);

@@ -11,6 +11,7 @@
 #include "core/geometry/notation.h"
 #include "projects/measure/measure.h"
 #include "projects/measure/nozzle.h"
+#include "projects/measure/reference_feature.h"
 #include "projects/proof/forecast.h"
 #include "projects/proof/path_direction.h"
 

@@ -527,8 +527,8 @@ std::vector<CheckItem> checklist(const Project& project, const Facts& facts) {
     std::vector<CheckItem> items;
     // The references' own program corrects nothing: it comes last, with what it owes.
     auto types = project.part_types;
-    std::ranges::stable_partition(
-        types, [&](const PartType& type) { return !references_alone(of_type(project, type.id)); });
+    std::stable_partition(types.begin(), types.end(),
+                          [&](const PartType& type) { return !references_alone(of_type(project, type.id)); });
     for (const PartType& type : types) {
         std::vector<CheckItem> its = checklist_of_one(of_type(project, type.id), facts_of(type.id, facts));
         if (!items.empty() && references_alone(of_type(project, type.id)))

@@ -40,9 +40,14 @@ struct SceneLabels {
         painter.setFont(owner.font());
         const QFontMetrics metrics(owner.font());
         std::vector<QRectF> taken;
+        const QRectF view = QRectF(owner.rect()).adjusted(2, 2, -2, -2);
         for (const Label& label : labels) {
+            if (!view.contains(label.at)) continue;
             QRectF box(label.at + QPointF(11, -metrics.height() - 3),
                        QSizeF(metrics.horizontalAdvance(label.text) + 10, metrics.height() + 2));
+            // Whole: what would reach beyond the view stands beside its rim.
+            box.translate(std::max(std::min(0.0, view.right() - box.right()), view.left() - box.left()),
+                          std::max(0.0, view.top() - box.top()));
             // Labels that would cover another one move down.
             for (int tries = 0; tries < 6; ++tries) {
                 const bool covered = std::any_of(taken.begin(), taken.end(),

@@ -260,14 +260,14 @@ void StationWorker::take_shots(const std::vector<std::string>& sensor_ids, const
 
 void StationWorker::go_to(const std::string& robot_id, const Pose& base_from_flange) {
     post(tr("Moving the robot"), [=, this](Station& station, const std::stop_token& cancelled) {
-        QString trouble;
-        RobotLink* robot = station.robot(robot_id);
-        if (cancelled.stop_requested())
-            trouble = tr("The robot was not moved: cancelled.");
-        else if (!robot)
-            trouble = tr("The robot is not connected.");
-        else if (auto moved = robot->move_to(base_from_flange); !moved)
-            trouble = shown_error(tr("The robot was not moved."), moved.error());
+        const auto move = [&]() -> QString {
+            RobotLink* robot = station.robot(robot_id);
+            if (cancelled.stop_requested()) return tr("The robot was not moved: cancelled.");
+            if (!robot) return tr("The robot is not connected.");
+            auto moved = robot->move_to(base_from_flange);
+            return moved ? QString() : shown_error(tr("The robot was not moved."), moved.error());
+        };
+        const QString trouble = move();
         if (!trouble.isEmpty() && !cancelled.stop_requested()) emit failed(trouble);
         publish(station);
         emit arrived(robot_id, trouble);
@@ -298,11 +298,9 @@ void StationWorker::move_by_hand(Station& station, const JogRequest& request) {
         return emit jogged(request.robot_id, request.base_from_flange, tr("The robot is not connected."));
     auto moved = robot->move_to(request.base_from_flange);
     const auto at = robot->base_from_flange();
-    QString trouble;
-    if (!moved)
-        trouble = shown_error(tr("The robot was not moved."), moved.error());
-    else if (!at)
-        trouble = shown_error(tr("The robot does not tell where it stands."), at.error());
+    const QString trouble = !moved ? shown_error(tr("The robot was not moved."), moved.error())
+                            : !at  ? shown_error(tr("The robot does not tell where it stands."), at.error())
+                                   : QString();
     emit jogged(request.robot_id, at ? *at : request.base_from_flange, trouble);
 }
 

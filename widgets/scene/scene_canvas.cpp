@@ -125,6 +125,12 @@ const QImage& SceneCanvas::picture() {
     return picture_;
 }
 
+// The first picture makes the driver's programs, which takes half a second without a graphics card: while the window is
+// still coming, not under somebody's hand.
+void SceneCanvas::showEvent(QShowEvent*) {
+    if (rendered == 0) picture();
+}
+
 void SceneCanvas::resizeEvent(QResizeEvent*) {
     stale_ = true;
 }

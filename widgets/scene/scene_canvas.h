@@ -54,6 +54,7 @@ class SceneCanvas : public QWidget {
     vtkActor* part = nullptr;  // what the views are fitted to, while it shows
 
   protected:
+    void showEvent(QShowEvent* event) override;
     void paintEvent(QPaintEvent* event) override;
     void resizeEvent(QResizeEvent* event) override;
     void mousePressEvent(QMouseEvent* event) override;

@@ -6,8 +6,10 @@
 #include <QListWidget>
 #include <QRegularExpression>
 #include <QTreeWidget>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <set>
 #include <string>
@@ -241,8 +243,22 @@ class Teacher {
     int grouped_ = 0, look_clicks_ = 0, end_clicks_ = 0, template_clicks_ = 0;
 };
 
-// A standstill that a hand feels is printed; the longer one is a failure on any machine.
-inline constexpr double kFreeze_ms = 100, kStandstill_ms = 500;
+// The start has its own measure (bench_studio): the window stands, the demo's sensor is live and everything is painted once.
+inline bool come_up(Desk& desk) {
+    const auto live = [&] {
+        return desk.station().connected && !desk.station().sensors.empty() &&
+               desk.live().latest(desk.station().sensors.front().id);
+    };
+    if (!QTest::qWaitFor(live, 10'000)) return false;
+    QTest::qWait(500);
+    return true;
+}
+
+// What a hand feels. A machine that shares its processors with others may be given more (SEAMWRIGHT_FREEZE_MS).
+inline double freeze_ms() {
+    const char* given = std::getenv("SEAMWRIGHT_FREEZE_MS");
+    return given ? std::atof(given) : 100;
+}
 
 // How many clicks each chapter took, and how many it may: what a hand in a glove does a hundred times.
 struct Chapter {
@@ -255,11 +271,13 @@ inline void print(const std::vector<Chapter>& chapters, const std::vector<Freeze
         std::printf("%-44s %6d %5d\n", c.name, c.clicks, c.most);
         EXPECT_LE(c.clicks, c.most) << c.name;
     }
-    std::printf("the event loop stood still for %g ms or longer %zu times\n", kFreeze_ms, freezes.size());
+    double longest = 0;
     for (const Freeze& f : freezes) {
-        std::printf("  %-40s %.0f ms\n", f.during.toUtf8().constData(), f.ms);
-        EXPECT_LT(f.ms, kStandstill_ms) << f.during.toStdString();
+        longest = std::max(longest, f.ms);
+        EXPECT_LT(f.ms, freeze_ms()) << f.during.toStdString();
+        if (f.ms >= freeze_ms() / 2) std::printf("  %-40s %.0f ms\n", f.during.toUtf8().constData(), f.ms);
     }
+    std::printf("the event loop never stood still for longer than %.0f ms\n", longest);
 }
 
 }  // namespace seamwright

@@ -11,6 +11,7 @@
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QPointer>
 #include <QScreen>
 #include <QScrollArea>
 #include <QSettings>
@@ -701,8 +702,9 @@ void MainWindow::dropEvent(QDropEvent* event) {
             if (may_leave()) studio_.open(file);
             return;
         }
-        if (auto imported = desk_.import_part(file.toStdString(), ""); !imported)
-            tell(shown_error(tr("Nothing was imported."), imported.error()));
+        desk_.import_part(file.toStdString(), "", [window = QPointer(this)](const Expected<void>& imported) {
+            if (window && !imported) window->tell(shown_error(tr("Nothing was imported."), imported.error()));
+        });
     }
 }
 

@@ -16,7 +16,7 @@ Expected<Calibration> simulated_truth(const SensorSetup& sensor, const RobotSetu
     if (!is_simulated_cell(sensor.driver) || !is_simulated_cell(robot.driver))
         return input_error("only a simulated cell knows its own calibration", Text("sensor {}", sensor.id),
                            "calibrate the sensor");
-    SEAM_TRY(auto cell, SimulatedCell::open(sensor.settings));
+    SEAM_TRY(const auto cell, parse_cell_settings(sensor.settings));
     Calibration c;
     c.id = "simulated-truth";
     c.method = "simulated truth";
@@ -26,8 +26,8 @@ Expected<Calibration> simulated_truth(const SensorSetup& sensor, const RobotSetu
     c.robot_identity = robot.identity;
     c.created_utc = utc_now();
     c.source = "the simulated cell's own optics and mounting";
-    c.model = cell->sensor_model();
-    c.flange_from_sensor = cell->flange_from_sensor();
+    c.model = sensor_model_of(cell.optics);
+    c.flange_from_sensor = cell.flange_from_sensor;
     c.verdict = Verdict::good;
     return c;
 }

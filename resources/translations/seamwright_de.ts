@@ -2851,6 +2851,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
 <context>
     <name>seamwright::CellPage</name>
     <message>
+        <source>Reading %1 ...</source>
+        <translation>%1 wird gelesen ...</translation>
+    </message>
+    <message>
         <source>Which sensors and robots there are, and which part they look at. Connect them here.</source>
         <translation>Welche Sensoren und Roboter es gibt und welches Teil sie sehen. Hier werden sie verbunden.</translation>
     </message>

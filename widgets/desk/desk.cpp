@@ -196,6 +196,7 @@ void Desk::take_over(ProjectFile file, Project project) {
     file_.emplace(std::move(file));
     person_ = file_->person();
     if (!person_) signed_in_.reset();
+    import_.drop();
     project_ = std::move(project);
     facts_ = {};
     undo_.clear();
@@ -585,14 +586,24 @@ Expected<void> Desk::edit_part(const PartSetup& after, const QString& text) {
     return {};
 }
 
-Expected<void> Desk::import_part(const std::filesystem::path& path, const std::string& unit) {
-    SEAM_TRY(auto mesh, load_mesh(path, unit));
-    PartSetup after = project_.part;
-    after.mesh_ply = ply_bytes(mesh);
-    after.mesh_source = path.string();
-    if (after.name.empty()) after.name = path.stem().string();
-    return edit_part(after,
-                     DeskCommand::tr("Import part %1").arg(QString::fromStdString(path.filename().string())));
+void Desk::import_part(const std::filesystem::path& path, const std::string& unit,
+                       std::function<void(const Expected<void>&)> told) {
+    const auto read = [path, unit]() -> Expected<std::vector<std::byte>> {
+        SEAM_TRY(const auto mesh, load_mesh(path, unit));
+        return ply_bytes(mesh);
+    };
+    const auto take = [this, path](Expected<std::vector<std::byte>> ply) -> Expected<void> {
+        if (!ply) return tl::unexpected(std::move(ply.error()));
+        PartSetup after = project_.part;
+        after.mesh_ply = std::move(*ply);
+        after.mesh_source = path.string();
+        if (after.name.empty()) after.name = path.stem().string();
+        return edit_part(
+            after, DeskCommand::tr("Import part %1").arg(QString::fromStdString(path.filename().string())));
+    };
+    import_.run(read, [take, told = std::move(told)](Expected<std::vector<std::byte>> ply) {
+        told(take(std::move(ply)));
+    });
 }
 
 Expected<void> Desk::rename_project(const std::string& name) {

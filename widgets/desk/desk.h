@@ -9,6 +9,7 @@
 #include <QObject>
 #include <QUndoStack>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -16,6 +17,7 @@
 #include "core/ids.h"
 #include "projects/file/file_use.h"
 #include "projects/reuse/reteach.h"
+#include "widgets/aside.h"
 #include "widgets/desk/commands.h"
 #include "widgets/desk/recovery.h"
 #include "widgets/desk/selection.h"
@@ -83,8 +85,10 @@ class Desk : public QObject {
     // Adds calibrations, and with `use` has each sensor use its own: all or none, one step of undo.
     Expected<void> take_calibrations(std::vector<Calibration> made, bool use);
     Expected<void> edit_part(const PartSetup& after, const QString& text);
-    // STL, PLY, OBJ; `unit` "mm", "m", or "" (refused when metres are suspected).
-    Expected<void> import_part(const std::filesystem::path& mesh, const std::string& unit);
+    // STL, PLY, OBJ; `unit` "mm", "m", or "" (refused when metres are suspected). The file is read beside the window;
+    // `told` hears on this thread how it went, unless another import or project came meanwhile.
+    void import_part(const std::filesystem::path& mesh, const std::string& unit,
+                     std::function<void(const Expected<void>&)> told);
     Expected<void> rename_project(const std::string& name);
     Expected<void> set_requirement(const std::string& field, double value);
     // What the acceptance asks for.
@@ -160,6 +164,7 @@ class Desk : public QObject {
     Selection selection_;
     LiveFeed live_;
     StationWorker worker_;
+    Aside import_;
     RecoveryWriter recovery_writer_;
     std::optional<FileUse> use_;  // of file_
     std::optional<ProjectFile> file_;

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <QFileDialog>
+#include <QFileInfo>
 #include <QInputDialog>
 #include <QMenu>
+#include <QPointer>
 
 #include "devices/exchange/json_fields.h"
 #include "devices/registry.h"
@@ -464,8 +466,14 @@ void CellPage::apply() {
 void CellPage::import_part() {
     const QString file =
         QFileDialog::getOpenFileName(this, tr("Import part"), {}, tr("Meshes (*.stl *.ply *.obj)"));
-    if (!file.isEmpty())
-        done(desk_.import_part(file.toStdString(), unit_->currentData().toString().toStdString()));
+    if (file.isEmpty()) return;
+    part_->setText(tr("Reading %1 ...").arg(QFileInfo(file).fileName()));
+    desk_.import_part(file.toStdString(), unit_->currentData().toString().toStdString(),
+                      [page = QPointer(this)](const Expected<void>& imported) {
+                          if (!page) return;
+                          page->done(imported);
+                          page->later();
+                      });
 }
 
 void CellPage::place_part() {

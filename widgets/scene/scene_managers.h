@@ -89,6 +89,5 @@ std::optional<WeakArrow> weak_arrow(const SceneRegion& region, const std::vector
 // Lit mesh with smooth normals across edges below 30 degrees.
 vtkSmartPointer<vtkPolyData> part_surface(const SceneMesh& mesh);
 Expected<SceneMesh> mesh_from_ply(const std::vector<std::byte>& ply);
-Expected<SceneMesh> mesh_from_file(const std::filesystem::path& file, const std::string& unit);
 
 }  // namespace seamwright

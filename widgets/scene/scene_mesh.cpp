@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <string_view>
 
-#include "devices/simulated/scene/mesh_file.h"
 #include "widgets/scene/scene_managers.h"
 
 namespace seamwright {
@@ -71,17 +70,6 @@ Expected<SceneMesh> mesh_from_ply(const std::vector<std::byte>& ply) {
         for (vtkIdType k = 2; k < count; ++k)
             mesh.triangles.push_back({static_cast<int>(corners[0]), static_cast<int>(corners[k - 1]),
                                       static_cast<int>(corners[k])});
-    return mesh;
-}
-
-Expected<SceneMesh> mesh_from_file(const std::filesystem::path& file, const std::string& unit) {
-    SEAM_TRY(const auto loaded, load_mesh(file, unit));
-    SceneMesh mesh;
-    mesh.points.reserve(loaded.vertices.size());
-    for (const Eigen::Vector3d& v : loaded.vertices)
-        mesh.points.push_back(
-            {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())});
-    for (const Eigen::Vector3i& t : loaded.triangles) mesh.triangles.push_back({t.x(), t.y(), t.z()});
     return mesh;
 }
 

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <map>
 
+#include "widgets/aside.h"
 #include "widgets/picture_file.h"
 #include "widgets/scene/scene_canvas.h"
 #include "widgets/scene/scene_managers.h"
@@ -114,6 +115,7 @@ struct SceneView::Impl {
     std::map<Layer, QAction*> actions;
     std::map<Layer, bool> shown;
     SceneMesh mesh;
+    vtkSmartPointer<vtkPolyData> surface = part_surface({});  // of the mesh
     std::vector<SceneSpot> spots;
     std::vector<SceneRegion> regions;
     ScenePath path;
@@ -128,6 +130,7 @@ struct SceneView::Impl {
     std::string spot, region;
     double scale = 20;
     bool first_fit = true;
+    Aside reading;  // last: its end waits
 
     explicit Impl(SceneView& owner) : view(owner) {}
     LayerManager* manager(Layer layer) {
@@ -138,6 +141,7 @@ struct SceneView::Impl {
     void restyle();
     void redraw(Layer layer);
     void redraw_all();
+    void take_part(SceneMesh part, vtkSmartPointer<vtkPolyData> drawn);
     SceneLabels words() const;
     void paint_words(QPainter& painter) const { words().paint(painter, *canvas); }
     const SceneEdge* edge_at(const QPointF& at) const;
@@ -222,7 +226,7 @@ void SceneView::Impl::redraw(Layer layer) {
     const QPalette palette = view.palette();
     switch (layer) {
         case Layer::part:
-            one->set(part_surface(mesh));
+            one->set(surface);
             break;
         case Layer::spots:
             one->set(draw_spots(spots, spot, palette));
@@ -436,24 +440,31 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
 
 SceneView::~SceneView() = default;
 
-Expected<void> SceneView::set_part_ply(const std::vector<std::byte>& ply) {
-    SEAM_TRY(const auto mesh, mesh_from_ply(ply));
-    set_part(mesh);
-    return {};
-}
-
-Expected<void> SceneView::set_part_file(const std::filesystem::path& file, const std::string& unit) {
-    SEAM_TRY(const auto mesh, mesh_from_file(file, unit));
-    set_part(mesh);
-    return {};
+void SceneView::set_part_ply(const std::vector<std::byte>& ply) {
+    using Surface = vtkSmartPointer<vtkPolyData>;
+    const auto read = [ply]() -> Expected<std::pair<SceneMesh, Surface>> {
+        SEAM_TRY(auto mesh, mesh_from_ply(ply));
+        Surface surface = part_surface(mesh);
+        return std::pair(std::move(mesh), std::move(surface));
+    };
+    impl_->reading.run(read, [this](Expected<std::pair<SceneMesh, Surface>> part) {
+        if (part) impl_->take_part(std::move(part->first), part->second);
+        emit part_read(part.has_value());
+    });
 }
 
 void SceneView::set_part(const SceneMesh& mesh) {
-    impl_->mesh = mesh;
-    impl_->redraw(Layer::part);
-    if (impl_->first_fit && !mesh.points.empty()) {
-        impl_->first_fit = false;
-        show_view(View::iso);
+    impl_->reading.drop();
+    impl_->take_part(mesh, part_surface(mesh));
+}
+
+void SceneView::Impl::take_part(SceneMesh part, vtkSmartPointer<vtkPolyData> drawn) {
+    mesh = std::move(part);
+    surface = std::move(drawn);
+    redraw(Layer::part);
+    if (first_fit && !mesh.points.empty()) {
+        first_fit = false;
+        view.show_view(View::iso);
     }
 }
 

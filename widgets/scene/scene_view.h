@@ -78,12 +78,10 @@ class SceneView : public QWidget {
     explicit SceneView(QWidget* parent = nullptr);
     ~SceneView() override;
 
-    // Binary or ASCII PLY, millimetres, as in PartSetup::mesh_ply; empty bytes remove the part. Error: not a
-    // PLY.
-    Expected<void> set_part_ply(const std::vector<std::byte>& ply);
-    // STL, PLY or OBJ; `unit` "mm", "m" or "" (refused when metres are suspected), see mesh_file.h.
-    Expected<void> set_part_file(const std::filesystem::path& file, const std::string& unit);
-    void set_part(const SceneMesh& mesh);
+    // Binary or ASCII PLY, millimetres, as in PartSetup::mesh_ply; empty bytes remove the part. Read beside the window:
+    // part_read() says when it is shown, or that it is no PLY.
+    void set_part_ply(const std::vector<std::byte>& ply);
+    void set_part(const SceneMesh& mesh);                   // at once
     void set_part_shift(const Pose& workobject_from_part);  // displaced part; identity at teaching
     void set_spots(const std::vector<SceneSpot>& spots);
     void set_regions(const std::vector<SceneRegion>& regions);
@@ -123,6 +121,7 @@ class SceneView : public QWidget {
     QSize minimumSizeHint() const override { return {280, 220}; }
 
   signals:
+    void part_read(bool readable);
     void spot_picked(QString id);                    // "" = nothing there
     void part_picked(double x, double y, double z);  // work object, mm
     void edge_picked(QString id);

@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <QCoreApplication>
+#include <optional>
+
 #include "devices/simulated/cell.h"
 #include "devices/simulated/scene/mesh_file.h"
 #include "tests/widgets/desk/desk_fixture.h"
@@ -178,6 +181,13 @@ class Commands : public testing::Test {
     Desk& desk = me.desk;
     void SetUp() override { ASSERT_TRUE(desk.create(folder / "a.seam", full_project())); }
     std::string now() const { return bits(desk.project()); }
+    Expected<void> imported(const std::filesystem::path& mesh, const std::string& unit) {
+        std::optional<Expected<void>> told;
+        desk.import_part(mesh, unit, [&](const Expected<void>& how) { told = how; });
+        EXPECT_FALSE(told) << "nobody waits for the file";
+        while (!told) QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents);
+        return *told;
+    }
 };
 
 class EveryEdit : public Commands, public testing::WithParamInterface<Edit> {};
@@ -317,7 +327,7 @@ TEST_F(Commands, WhatIsWrongIsRefusedAndChangesNothing) {
     refused(desk.take_calibrations({good, lost}, true), "\"Z\"");
     refused(desk.take_calibrations({good, good}, false), "used already");
     refused(desk.use_calibration(SensorId("A"), CalibrationId("none")), "\"none\"");
-    refused(desk.import_part(folder / "none.stl", "mm"), "none.stl");
+    refused(imported(folder / "none.stl", "mm"), "none.stl");
 }
 
 TEST_F(Commands, ImportedPartsComeAndGo) {
@@ -325,7 +335,7 @@ TEST_F(Commands, ImportedPartsComeAndGo) {
     const std::vector<std::byte> ply = ply_bytes(cell->part_mesh());
     write_bytes(folder / "door.ply", {reinterpret_cast<const char*>(ply.data()), ply.size()});
     const std::string before = now();
-    ASSERT_TRUE(desk.import_part(folder / "door.ply", ""));
+    ASSERT_TRUE(imported(folder / "door.ply", ""));
     EXPECT_EQ(desk.undo_stack().undoText(), "Import part door.ply");
     EXPECT_EQ(desk.project().part.mesh_ply, ply);
     EXPECT_EQ(desk.project().part.name, "door left") << "a name that is there stays";

@@ -171,7 +171,7 @@ void ViewFeeder::project() {
     const Project& p = desk_.project();
     if (p.part.mesh_ply != shown_mesh_) {
         shown_mesh_ = p.part.mesh_ply;
-        (void)views_.scene->set_part_ply(shown_mesh_);  // import has read it: it is a PLY
+        views_.scene->set_part_ply(shown_mesh_);
     }
     std::vector<SceneSpot> spots;
     for (const Spot& spot : p.spots) {

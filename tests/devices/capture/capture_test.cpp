@@ -357,6 +357,7 @@ class NumberedSensor final : public ProfileSource {
   public:
     explicit NumberedSensor(std::uint64_t frames) : frames_(frames), pool_(8) {}
     bool started = false, refuses = false, fails = false;
+    std::atomic<int> failed = 0;
     SensorIdentity identity() const override { return {"test", "", "", ""}; }
     Expected<void> start() override {
         if (refuses) return device_error("it does not start", "sensor");
@@ -366,7 +367,10 @@ class NumberedSensor final : public ProfileSource {
     void stop() override { started = false; }
     Expected<void> trigger(const std::string&) override { return {}; }
     Expected<FramePtr> wait_next(std::chrono::milliseconds timeout) override {
-        if (fails) return device_error("the cable is out", "sensor");
+        if (fails) {
+            ++failed;
+            return device_error("the cable is out", "sensor");
+        }
         if (next_ == frames_) {
             std::this_thread::sleep_for(timeout);
             return device_error(ErrorCode::silence, std::string(kNoAnswer) + ": no frame", "sensor");
@@ -400,7 +404,7 @@ TEST(RecordingSession, PumpsUntilStoppedWithinASecond) {
     ASSERT_TRUE(session);
     EXPECT_TRUE(a.started && b.started);
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while ((*session)->frames() < 400 && std::chrono::steady_clock::now() < until)
+    while (((*session)->frames() < 400 || c.failed < 2) && std::chrono::steady_clock::now() < until)
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     const auto before = std::chrono::steady_clock::now();
     (*session)->stop();

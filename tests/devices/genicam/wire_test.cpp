@@ -142,7 +142,10 @@ TEST_F(Wire, FeaturesWithTheCamerasRanges) {
     EXPECT_EQ(infos.at("trigger").choices, (std::vector<std::string>{"free", "Line1", "software"}));
     EXPECT_EQ((*sensor)->get("trigger").value(), 2);
     EXPECT_EQ((*sensor)->get("exposure_us").value(), 2500);
-    for (int i = 0; i < 200 && cell_->parameter("exposure_us") != 2500; ++i) std::this_thread::sleep_for(5ms);
+    const auto reached = [&] {
+        return cell_->parameter("exposure_us") == 2500 && cell_->parameter("gain_db") == 6;
+    };
+    for (int i = 0; i < 200 && !reached(); ++i) std::this_thread::sleep_for(5ms);
     EXPECT_EQ(cell_->parameter("exposure_us"), 2500);  // reached the cell
     EXPECT_EQ(cell_->parameter("gain_db"), 6);
     ASSERT_TRUE((*sensor)->set("exposure_us", 1000));

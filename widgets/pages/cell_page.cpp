@@ -472,7 +472,7 @@ void CellPage::import_part() {
                       [page = QPointer(this)](const Expected<void>& imported) {
                           if (!page) return;
                           page->done(imported);
-                          page->later();
+                          page->refresh();
                       });
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/acceptance/distributions.h"
+#include "core/acceptance/levels.h"
 
 namespace seamwright {
 
@@ -38,14 +39,14 @@ Expected<Correlation> correlation_study(std::span<const StudyValue> values) {
     if (all_equal(moments(x)))
         return input_error("the references are all equal", "correlation", "take parts that differ");
     const Moments m = moments(differences);
-    if (m.s <= 1e-12)
+    if (m.s <= kRoundedScatter)
         return input_error("all differences are equal, so they tell nothing of the scatter", "correlation",
                            "give the values with more digits");
     const double n = static_cast<double>(differences.size()), by = m.s / std::sqrt(n);
     r.offset_mm = m.mean;
     r.s_mm = m.s;
     r.offset_p = student_two_sided_p(n - 1, m.mean / by);
-    const double t = t_quantile(n - 1, 0.975);
+    const double t = t_quantile(n - 1, kBelowHigh95);
     r.offset_limits = {m.mean - t * by, m.mean + t * by};
     r.line = fit_line(x, y);
     r.r = std::copysign(std::sqrt(r.line.r2), r.line.slope);

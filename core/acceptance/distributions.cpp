@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/acceptance/levels.h"
+
 namespace seamwright {
 namespace {
 
@@ -86,12 +88,12 @@ Moments moments(std::span<const double> values) {
 }
 
 bool all_equal(const Moments& m) {
-    return m.s <= 1e-12 * std::max(1.0, std::abs(m.mean));
+    return m.s <= kRoundedScatter * std::max(1.0, std::abs(m.mean));
 }
 
 Interval sigma_limits(double s, double degrees) {
-    return {s * std::sqrt(degrees / chi_square_quantile(degrees, 0.975)),
-            s * std::sqrt(degrees / chi_square_quantile(degrees, 0.025))};
+    return {s * std::sqrt(degrees / chi_square_quantile(degrees, kBelowHigh95)),
+            s * std::sqrt(degrees / chi_square_quantile(degrees, kBelowLow95))};
 }
 
 double satterthwaite_degrees(std::span<const MeanSquare> terms) {
@@ -133,10 +135,11 @@ Interval generalised_limits(const MeanSquare& top, std::span<const OtherPivots> 
             at_high = probability(high) - wanted;
         }
         // Illinois' false position: the bracket never grows.
-        for (int step = 0, side = 0; step < 100 && high - low > 1e-7 * high; ++step) {
+        constexpr double kNarrow = 1e-7, kFound = 1e-9;  // of x, and in probability
+        for (int step = 0, side = 0; step < 100 && high - low > kNarrow * high; ++step) {
             const double x = (low * at_high - high * at_low) / (at_high - at_low);
             const double at = probability(x) - wanted;
-            if (std::abs(at) < 1e-9) return x;
+            if (std::abs(at) < kFound) return x;
             if (at > 0) {
                 high = x, at_high = at;
                 if (side > 0) at_low /= 2;
@@ -149,7 +152,7 @@ Interval generalised_limits(const MeanSquare& top, std::span<const OtherPivots> 
         }
         return (low + high) / 2;
     };
-    return {quantile(0.025), quantile(0.975)};
+    return {quantile(kBelowLow95), quantile(kBelowHigh95)};
 }
 
 }  // namespace seamwright

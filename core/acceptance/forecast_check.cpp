@@ -9,11 +9,13 @@
 namespace seamwright {
 namespace {
 
+constexpr double kBeyond99 = 0.01, kBeyond95 = 0.05;  // p below which the two disagree
+
 ForecastCheck with_p(ForecastCheck check, double p) {
     check.p = std::clamp(p, 0.0, 1.0);
-    check.agreement = check.p < 0.01   ? Agreement::beyond_99
-                      : check.p < 0.05 ? Agreement::beyond_95
-                                       : Agreement::agrees;
+    check.agreement = check.p < kBeyond99   ? Agreement::beyond_99
+                      : check.p < kBeyond95 ? Agreement::beyond_95
+                                            : Agreement::agrees;
     return check;
 }
 

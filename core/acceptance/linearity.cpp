@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/acceptance/distributions.h"
+#include "core/acceptance/levels.h"
 
 namespace seamwright {
 
@@ -40,7 +41,7 @@ Line fit_line(std::span<const double> x, std::span<const double> y) {
         l.p_slope = student_two_sided_p(n - 2, l.t_slope);
         l.p_intercept = student_two_sided_p(n - 2, l.t_intercept);
     }
-    const double t = t_quantile(n - 2, 0.975);
+    const double t = t_quantile(n - 2, kBelowHigh95);
     l.slope_limits = {l.slope - t * u_slope, l.slope + t * u_slope};
     l.intercept_limits = {l.intercept - t * u_intercept, l.intercept + t * u_intercept};
     return l;
@@ -48,7 +49,7 @@ Line fit_line(std::span<const double> x, std::span<const double> y) {
 
 Interval Line::band(double x) const {
     const double by =
-        t_quantile(n - 2, 0.975) * s * std::sqrt(1.0 / n + (x - mean_x) * (x - mean_x) / sum_x2);
+        t_quantile(n - 2, kBelowHigh95) * s * std::sqrt(1.0 / n + (x - mean_x) * (x - mean_x) / sum_x2);
     return {at(x) - by, at(x) + by};
 }
 
@@ -71,7 +72,7 @@ Expected<Linearity> linearity_study(std::span<const StudyValue> values) {
                            Text("measure {} levels {} times each", kLinearityLevels, kLinearityRepeats));
     Linearity r;
     r.line = fit_line(x, bias);
-    if (r.line.s <= 1e-12)
+    if (r.line.s <= kRoundedScatter)
         return input_error("the values lie on a line exactly, so they tell nothing of the scatter",
                            "linearity", "give them with more digits");
     std::size_t most = 0;

@@ -7,11 +7,14 @@
 #include <map>
 
 #include "core/acceptance/distributions.h"
+#include "core/acceptance/levels.h"
 #include "core/acceptance/type1.h"
 #include "core/numbers.h"
 
 namespace seamwright {
 namespace {
+
+constexpr double kLeastDegrees = 1e-9;  // of a term that is next to nothing
 
 struct Standard {
     std::vector<double> biases;
@@ -72,7 +75,7 @@ Expected<ProcessUncertainty> process_uncertainty(std::span<const StudyValue> ref
         if (std::abs(m.mean) >= std::abs(r.bias_mm)) r.bias_mm = m.mean, worst_n = n;
     }
     const double s = std::sqrt(squares / degrees);
-    if (s <= 1e-12)
+    if (s <= kRoundedScatter)
         return input_error("all values are equal, so they tell nothing of the scatter", "vda5",
                            "give them with more digits");
     const double b2 = r.bias_mm * r.bias_mm, of_mean = s * s / worst_n;
@@ -82,7 +85,7 @@ Expected<ProcessUncertainty> process_uncertainty(std::span<const StudyValue> ref
     const bool re_in_ms = u_re > s, re_in_mp = u_re > std::max(s, ev), evo_in_mp = !re_in_mp && ev > s;
     r.terms.push_back({"u_CAL", settings.reference_u_mm, kInfinity, true, true});
     r.terms.push_back(
-        {"u_BI", std::abs(r.bias_mm) / std::sqrt(3.0), std::max(1e-9, bias_degrees), true, true});
+        {"u_BI", std::abs(r.bias_mm) / std::sqrt(3.0), std::max(kLeastDegrees, bias_degrees), true, true});
     r.terms.push_back({"u_RE", u_re, kInfinity, re_in_ms, re_in_mp});
     r.terms.push_back({"u_EVR", s, degrees, !re_in_ms, !re_in_mp && !evo_in_mp});
     if (production) {
@@ -96,7 +99,7 @@ Expected<ProcessUncertainty> process_uncertainty(std::span<const StudyValue> ref
         if (of_rehang) {
             const double n = production->runs, ev2 = ev * ev;
             const MeanSquare differences[] = {{of_rehang->ms / n, of_rehang->df}, {-ev2 / n, within}};
-            rehang = std::max(1e-9, satterthwaite_degrees(differences));
+            rehang = std::max(kLeastDegrees, satterthwaite_degrees(differences));
             r.terms.push_back({"u_REH", production->rehang_mm, rehang, false, true});
         }
     }

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/acceptance/distributions.h"
+#include "core/acceptance/levels.h"
 
 namespace seamwright {
 namespace {
@@ -99,7 +100,7 @@ Expected<Stability> stability_study(std::span<const Subgroup> subgroups) {
     const double count = static_cast<double>(subgroups.size());
     r.centre_mm = of_means.mean;
     for (const double s : r.s_mm) r.mean_s_mm += s / (r.size > 1 ? count : count - 1);
-    if (r.mean_s_mm <= 1e-12 * std::max(1.0, std::abs(r.centre_mm)))
+    if (r.mean_s_mm <= kRoundedScatter * std::max(1.0, std::abs(r.centre_mm)))
         return input_error("the values of every subgroup are equal, so they tell nothing of the scatter",
                            "stability", "give them with more digits");
     double of_mean = 0;
@@ -109,11 +110,11 @@ Expected<Stability> stability_study(std::span<const Subgroup> subgroups) {
         of_mean = r.sigma_mm / std::sqrt(static_cast<double>(r.size));
         r.s_chart = {std::max(0.0, r.mean_s_mm * (1 - by)), r.mean_s_mm * (1 + by)};
     } else {
-        r.sigma_mm = of_mean = r.mean_s_mm / 1.128;
-        r.s_chart = {0, 3.267 * r.mean_s_mm};
+        r.sigma_mm = of_mean = r.mean_s_mm / kMeanRange;
+        r.s_chart = {0, kMostRange * r.mean_s_mm};
     }
     r.mean_chart = {r.centre_mm - 3 * of_mean, r.centre_mm + 3 * of_mean};
-    const double by = t_quantile(count - 1, 0.975) * of_means.s / std::sqrt(count);
+    const double by = t_quantile(count - 1, kBelowHigh95) * of_means.s / std::sqrt(count);
     r.centre_limits = {r.centre_mm - by, r.centre_mm + by};
 
     r.alarms = nelson_rules(r.means_mm, r.centre_mm, of_mean);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/acceptance/distributions.h"
+#include "core/acceptance/levels.h"
 
 namespace seamwright {
 namespace {
@@ -28,13 +29,14 @@ Interval noncentralities(double degrees, double t) {
         }
         return (low + high) / 2;
     };
-    return {delta(0.975), delta(0.025)};
+    return {delta(kBelowHigh95), delta(kBelowLow95)};
 }
 
 }  // namespace
 
 Expected<void> check_positive(double value, const char* word) {
-    if (std::isfinite(value) && value > 0 && value < 1e6) return {};
+    constexpr double kTooLarge = 1e6;
+    if (std::isfinite(value) && value > 0 && value < kTooLarge) return {};
     return input_error(Text("the {} of {} is none", word, value), "", "give a positive number");
 }
 
@@ -68,7 +70,7 @@ Expected<Type1> type1_study(std::span<const double> values_mm, double reference_
     r.cg = 2 * half / (settings.width * m.s);
     r.cgk = (half - std::abs(r.bias_mm)) / (settings.width / 2 * m.s);
 
-    const double by = t_quantile(nu, 0.975) * m.s / std::sqrt(n);
+    const double by = t_quantile(nu, kBelowHigh95) * m.s / std::sqrt(n);
     r.mean_limits = {r.mean_mm - by, r.mean_mm + by};
     r.bias_limits = {r.bias_mm - by, r.bias_mm + by};
     r.s_limits = sigma_limits(m.s, nu);

@@ -7,10 +7,14 @@
 #include <map>
 
 #include "core/acceptance/distributions.h"
+#include "core/acceptance/levels.h"
 #include "core/acceptance/type1.h"
 
 namespace seamwright {
 namespace {
+
+constexpr double kCategories = 1.41;  // ndc = 1.41 PV / GRR
+constexpr double kMostCategories = 1e6;
 
 using Parts = std::map<std::string, std::map<std::string, std::vector<double>>>;
 
@@ -89,7 +93,7 @@ Expected<Type3> type3_study(std::span<const StudyValue> values, const Type3Setti
     const MeanSquare within{ss_within / within_degrees, within_degrees};
     const MeanSquare rehang{r.nested ? ss_rehang / (k * (h - 1)) : within.value,
                             r.nested ? k * (h - 1) : within.degrees};
-    if (std::sqrt(within.value + rehang.value) <= 1e-12 * std::max(1.0, std::abs(r.mean_mm)))
+    if (std::sqrt(within.value + rehang.value) <= kRoundedScatter * std::max(1.0, std::abs(r.mean_mm)))
         return input_error("the values of every part are all equal, so they tell nothing of the scatter",
                            "type 3", "give them with more digits");
     r.anova.push_back({"part", part.degrees, ss_part, part.value});
@@ -109,7 +113,7 @@ Expected<Type3> type3_study(std::span<const StudyValue> values, const Type3Setti
     const double to_percent = 100 * settings.width / settings.tolerance_mm;
     r.grr_percent_tolerance = to_percent * r.grr_mm;
     r.grr_percent_total = 100 * r.grr_mm / r.tv_mm;
-    r.ndc = static_cast<int>(std::min(1e6, 1.41 * r.pv_mm / r.grr_mm));
+    r.ndc = static_cast<int>(std::min(kMostCategories, kCategories * r.pv_mm / r.grr_mm));
 
     r.ev_limits = sigma_limits(r.ev_mm, within.degrees);
     r.grr_degrees = within.degrees;
@@ -137,10 +141,11 @@ Expected<Type3> type3_study(std::span<const StudyValue> values, const Type3Setti
         const auto of = [&](double probability) {
             return std::max(0.0, (f / f_quantile(part.degrees, within.degrees, probability) - 1) / (h * n));
         };
-        lambda = {of(0.975), of(0.025)};
+        lambda = {of(kBelowHigh95), of(kBelowLow95)};
     }
     r.total_limits = {100 / std::sqrt(1 + lambda.high), 100 / std::sqrt(1 + lambda.low)};
-    r.ndc_limits = {std::floor(1.41 * std::sqrt(lambda.low)), std::floor(1.41 * std::sqrt(lambda.high))};
+    r.ndc_limits = {std::floor(kCategories * std::sqrt(lambda.low)),
+                    std::floor(kCategories * std::sqrt(lambda.high))};
 
     r.verdict = r.parts < kType3Parts                                ? AcceptanceVerdict::too_little_data
                 : r.grr_percent_tolerance > settings.refused_percent ? AcceptanceVerdict::not_ok

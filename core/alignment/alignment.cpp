@@ -35,6 +35,15 @@ constexpr double kLeastTurn_deg = 0.02;
 // A straight profile that slides so far along an axis says nothing about it.
 constexpr double kSlidesAlong = 0.1;
 constexpr double kStraight_per_mm = 1e-9;
+// A profile within so much of its noise, and of its scatter along itself, is a straight line.
+constexpr double kStraightNoise = 1.5, kStraightShare = 1e-6;
+// Travels as near as these tell no motion from one to the next; it is followed ahead so many times their distance.
+constexpr double kSameTravel_mm = 1e-9, kMostAhead = 2.0;
+// Where a profile that was lost is searched for: to either side, more per mm of travel, and turned.
+constexpr double kSearched_mm = 2.0, kSearchedPerTravel = 0.3, kSearched_rad = 0.1;
+// What the others are registered to has so many of the usual points; where there is no noise, it may have this.
+constexpr double kUsualPoints = 0.8, kQuiet_mm = 1e-6;
+constexpr double kClearlyBetter = 1.02;
 // The best and the worst of the profiles are taken at this share.
 constexpr double kBestShare = 0.1;
 
@@ -85,7 +94,8 @@ Eigen::Vector2d straight_direction(const Profile& p) {
     const double rms = std::sqrt(std::max(0.0, eigen.eigenvalues()[0]) /
                                  static_cast<double>(std::max<std::size_t>(1, x.size())));
     const double noise = contour_noise_mm(x, z, scratch);
-    if (rms > 1.5 * noise + 1e-6 * std::sqrt(eigen.eigenvalues()[1])) return Eigen::Vector2d::Zero();
+    if (rms > kStraightNoise * noise + kStraightShare * std::sqrt(eigen.eigenvalues()[1]))
+        return Eigen::Vector2d::Zero();
     return eigen.eigenvectors().col(1);
 }
 
@@ -129,8 +139,8 @@ void track(const ContourMatcher& matcher, std::span<const TravelProfile> pass,
         if (usable_points(pass[i].profile) < static_cast<std::size_t>(kFewestProfiles)) continue;
         const double y = pass[i].travel_mm;
         PlanarMotion start = last;
-        if (known >= 2 && std::abs(last_y - before_y) > 1e-9) {
-            const double ahead = std::clamp((y - last_y) / (last_y - before_y), -2.0, 2.0);
+        if (known >= 2 && std::abs(last_y - before_y) > kSameTravel_mm) {
+            const double ahead = std::clamp((y - last_y) / (last_y - before_y), -kMostAhead, kMostAhead);
             start.dx_mm += ahead * (last.dx_mm - before.dx_mm);
             start.dz_mm += ahead * (last.dz_mm - before.dz_mm);
             start.phi_rad += ahead * (last.phi_rad - before.phi_rad);
@@ -138,8 +148,8 @@ void track(const ContourMatcher& matcher, std::span<const TravelProfile> pass,
         Registration r = matcher.refine(pass[i].profile, start);
         if (!accept(r, reference, straight, out[i])) {
             SearchWindow window;
-            window.dx_mm = window.dz_mm = 2.0 + 0.3 * std::abs(y);
-            window.phi_rad = 0.1;
+            window.dx_mm = window.dz_mm = kSearched_mm + kSearchedPerTravel * std::abs(y);
+            window.phi_rad = kSearched_rad;
             window.centre_mm = last * reference - reference;
             r = matcher.match(pass[i].profile, window);
             if (!accept(r, reference, straight, out[i])) continue;
@@ -211,13 +221,14 @@ std::optional<Reference> choose_reference(std::span<const TravelProfile> pass,
     int tried = 0;
     for (std::size_t k = 0; k < order.size() && tried < kReferencesTried; ++k) {
         const std::size_t i = order[k];
-        if (counts[k] < 0.8 * usual || noises[k] > kNoisy * quiet + 1e-6) continue;
+        if (counts[k] < kUsualPoints * usual || noises[k] > kNoisy * quiet + kQuiet_mm) continue;
         const Eigen::Vector2d reference = point ? *point : centroid(pass[i].profile);
         auto made = ContourMatcher::make(pass[i].profile, reference);
         if (!made) continue;
         ++tried;
         Reference r = register_to(i, std::move(*made), pass, order, reference);
-        if (!best || r.quality > 1.02 * best->quality || (r.good && !best->good)) best.emplace(std::move(r));
+        if (!best || r.quality > kClearlyBetter * best->quality || (r.good && !best->good))
+            best.emplace(std::move(r));
         if (best->good) break;
     }
     return best;

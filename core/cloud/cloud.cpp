@@ -8,9 +8,14 @@
 namespace seamwright {
 namespace {
 
+constexpr double kLastCell = 2097151;      // of 21 bits
+constexpr float kNoDirection = 1e-6F;      // length of a mean of directions that cancel each other
+constexpr double kSmallestCell_mm = 1e-6;  // where a cloud is thinned
+constexpr double kMostCellsAlong = 2e6;    // a cloud's longest side, so that they have their 21 bits
+
 // Cells are counted from the cloud's lower corner; 21 bits a coordinate.
 std::uint64_t cell_of(const Eigen::Vector3d& p, const Eigen::Vector3d& corner, double cell_mm) {
-    const Eigen::Array3d c = ((p - corner).array() / cell_mm).floor().max(0.0).min(2097151.0);
+    const Eigen::Array3d c = ((p - corner).array() / cell_mm).floor().max(0.0).min(kLastCell);
     return static_cast<std::uint64_t>(c.x()) | static_cast<std::uint64_t>(c.y()) << 21 |
            static_cast<std::uint64_t>(c.z()) << 42;
 }
@@ -118,7 +123,7 @@ Cloud voxel_grid(const Cloud& cloud, double cell_mm) {
     }
     const auto unit = [](Eigen::Vector3f& v) {
         const float length = v.norm();
-        v = length > 1e-6F ? Eigen::Vector3f(v / length) : Eigen::Vector3f::Zero();
+        v = length > kNoDirection ? Eigen::Vector3f(v / length) : Eigen::Vector3f::Zero();
     };
     for (std::size_t s = 0; s < out.size(); ++s) {
         out.points[s] = corner + out.points[s] / count[s];
@@ -132,10 +137,10 @@ Cloud voxel_grid(const Cloud& cloud, double cell_mm) {
 Cloud thinned(const Cloud& cloud, std::size_t most) {
     if (cloud.size() <= most || most == 0) return cloud;
     const Eigen::AlignedBox3d box = cloud.box();
-    double cell = std::max(box.sizes().maxCoeff(), 1e-6);
+    double cell = std::max(box.sizes().maxCoeff(), kSmallestCell_mm);
     // The smallest cell of the series that does not go beyond `most`.
     while (cells_in(cloud, box.min(), cell / std::sqrt(2.0), most) <= most &&
-           cell > box.sizes().maxCoeff() / 2e6)
+           cell > box.sizes().maxCoeff() / kMostCellsAlong)
         cell /= std::sqrt(2.0);
     return voxel_grid(cloud, cell);
 }

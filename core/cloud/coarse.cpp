@@ -14,6 +14,14 @@
 namespace seamwright {
 namespace {
 
+// Of a triple's sides: the share of the scan's size below which they are not used; what two may differ by, in spacings
+// or of their length.
+constexpr double kLeastSide = 0.15, kSideSpacings = 1.5, kSideShare = 0.03;
+constexpr double kOnLine = 1e-4;  // of variances: a triangle whose height is 1 % of its longest side
+constexpr std::size_t kPartPoints = 3000;
+constexpr double kLeastSpacing = 1e-3;                     // of the scan's size
+constexpr double kSameTurn_rad = 0.15, kSamePlace = 0.08;  // of the scan's size: two poses that are one start
+
 using Features = pcl::PointCloud<pcl::FPFHSignature33>;
 
 Features::Ptr features_of(const Cloud& cloud, double radius_mm) {
@@ -95,7 +103,7 @@ std::vector<Scored> consensus(const Cloud& scan, const Cloud& part, const Surfac
     }
     std::mt19937_64 random(options.seed);
     std::uniform_int_distribution<std::size_t> any(0, scan.size() - 1);
-    const double size = scan.box().diagonal().norm(), least = 0.15 * size;
+    const double size = scan.box().diagonal().norm(), least = kLeastSide * size;
     std::vector<Scored> found;
     for (int trial = 0, tested = 0; trial < 60 * options.trials && tested < options.trials; ++trial) {
         std::size_t at[3];
@@ -110,7 +118,7 @@ std::vector<Scored> consensus(const Cloud& scan, const Cloud& part, const Surfac
             q[k] = part.points[j];
             for (int o = 0; o < k && usable; ++o) {
                 const double a = (p[k] - p[o]).norm(), b = (q[k] - q[o]).norm();
-                usable = a > least && std::abs(a - b) < std::max(1.5 * spacing, 0.03 * a);
+                usable = a > least && std::abs(a - b) < std::max(kSideSpacings * spacing, kSideShare * a);
             }
         }
         if (!usable) continue;
@@ -138,7 +146,7 @@ Expected<Pose> pose_of_pairs(const std::vector<Eigen::Vector3d>& from,
         own += (from[i] - a) * (from[i] - a).transpose();
     }
     const SymmetricEigen e = symmetric_eigen(own);
-    if (!own.allFinite() || !cross.allFinite() || !(e.values[1] > 1e-4 * e.values[2]))
+    if (!own.allFinite() || !cross.allFinite() || !(e.values[1] > kOnLine * e.values[2]))
         return input_error("the picked points lie on a line", {},
                            "pick three places of the part that lie far apart");
     const SingularValues s = singular_values(cross);
@@ -152,9 +160,10 @@ std::vector<Pose> coarse_poses(const Cloud& cloud, const Surface& surface, const
     std::vector<Pose> out;
     if (cloud.size() < 20 || surface.empty()) return out;
     const double size = cloud.box().diagonal().norm();
-    const Cloud part = surface.sampled(3000, options.seed);
+    const Cloud part = surface.sampled(kPartPoints, options.seed);
     Cloud scan = thinned(cloud, 1500);
-    const double spacing = std::max(std::sqrt(surface.area_mm2() / 3000.0), 1e-3 * size);
+    const double spacing =
+        std::max(std::sqrt(surface.area_mm2() / static_cast<double>(kPartPoints)), kLeastSpacing * size);
     const Cloud probe = thinned(cloud, 120);
     std::vector<Scored> found;
     // Where no sensor says which side is out, both are tried.
@@ -170,8 +179,8 @@ std::vector<Pose> coarse_poses(const Cloud& cloud, const Surface& surface, const
     for (const Scored& s : found) {
         if (out.size() >= most) break;
         const bool near = std::any_of(out.begin(), out.end(), [&](const Pose& o) {
-            return angle_rad(o, s.pose) < 0.15 &&
-                   (o * surface.box().center() - s.pose * surface.box().center()).norm() < 0.08 * size;
+            return angle_rad(o, s.pose) < kSameTurn_rad &&
+                   (o * surface.box().center() - s.pose * surface.box().center()).norm() < kSamePlace * size;
         });
         if (!near) out.push_back(s.pose);
     }

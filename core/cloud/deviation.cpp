@@ -33,10 +33,11 @@ void make_histogram(DeviationMap& map, int bins) {
         if (std::isfinite(v)) sizes.push_back(std::abs(v));
     if (sizes.empty() || bins < 1) return;
     // Wide enough for all but one in a thousand; the outer bins take the rest.
+    constexpr double kWithin = 0.999, kLeastReach_mm = 1e-6;
     const auto at =
-        sizes.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(sizes.size() - 1));
+        sizes.begin() + static_cast<std::ptrdiff_t>(kWithin * static_cast<double>(sizes.size() - 1));
     std::nth_element(sizes.begin(), at, sizes.end());
-    const double reach = std::max(1e-6, static_cast<double>(*at)), width = 2 * reach / bins;
+    const double reach = std::max(kLeastReach_mm, static_cast<double>(*at)), width = 2 * reach / bins;
     for (int k = 0; k < bins; ++k) map.histogram.push_back({-reach + k * width, -reach + (k + 1) * width, 0});
     for (const float v : map.signed_mm) {
         if (!std::isfinite(v)) continue;
@@ -52,7 +53,8 @@ DeviationMap deviation_map(const Cloud& cloud, const Surface& surface, const Pos
     map.signed_mm.assign(cloud.size(), static_cast<float>(kNaN));
     if (cloud.empty() || surface.empty()) return map;
     const Pose part_from_base = base_from_part.inverse();
-    const double cell = 0.025 * surface.size_mm();
+    constexpr double kPlaceCell = 0.025;  // of the part's size: points of one place
+    const double cell = kPlaceCell * surface.size_mm();
     std::map<Cell, Place> places;
     double sum = 0, squares = 0;
     for (std::size_t i = 0; i < cloud.size(); ++i) {

@@ -42,18 +42,20 @@ std::map<Key, std::vector<std::size_t>> cells_of(const std::vector<Residual>& re
 double longest(const std::vector<Residual>& residuals) {
     Eigen::AlignedBox3d box;
     for (const Residual& r : residuals) box.extend(r.place);
-    return box.isEmpty() ? 1 : std::max(1e-3, box.diagonal().norm());
+    constexpr double kLeastSize_mm = 1e-3;
+    return box.isEmpty() ? 1 : std::max(kLeastSize_mm, box.diagonal().norm());
 }
 
 // Cells of the size at which there are about `count`.
 std::map<Key, std::vector<std::size_t>> cells_about(const std::vector<Residual>& residuals,
                                                     std::size_t count) {
+    constexpr double kFiner = 1.25;  // from one size of cells to the next
     double cell = longest(residuals);
     auto cells = cells_of(residuals, cell);
     for (int k = 0; k < 24; ++k) {
-        auto finer = cells_of(residuals, cell / 1.25);
+        auto finer = cells_of(residuals, cell / kFiner);
         if (finer.size() > count) break;
-        cell /= 1.25;
+        cell /= kFiner;
         cells = std::move(finer);
     }
     return cells;
@@ -92,11 +94,14 @@ double local_noise_mm(const std::vector<Residual>& residuals) {
         variances.push_back(squares / static_cast<double>(members.size() - 1));
     }
     // The median of a variance of some eight points lies a tenth below it.
-    return std::sqrt(1.1 * median(variances));
+    constexpr double kMeanOfMedian = 1.1;
+    return std::sqrt(kMeanOfMedian * median(variances));
 }
 
 std::vector<FormNode> form_nodes(const std::vector<Residual>& residuals, const FitSystem& system,
                                  double noise_mm) {
+    constexpr double kLeastNoise_mm2 = 1e-10;
+    constexpr double kNoNormal = 1e-3;  // length of a mean of normals that cancel each other
     std::vector<FormNode> nodes;
     for (const auto& [key, members] : cells_about(residuals, 180)) {
         FormNode node;
@@ -111,9 +116,9 @@ std::vector<FormNode> form_nodes(const std::vector<Residual>& residuals, const F
             row << r.normal, (r.place - system.middle).cross(r.normal) / system.spread_mm;
             node.row += row / n;
         }
-        node.noise_mm2 = std::max(node.noise_mm2, 1e-10);
+        node.noise_mm2 = std::max(node.noise_mm2, kLeastNoise_mm2);
         const double length = node.normal.norm();
-        if (length < 1e-3) continue;
+        if (length < kNoNormal) continue;
         node.normal /= length;
         nodes.push_back(node);
     }
@@ -126,6 +131,17 @@ namespace {
 
 using namespace fitting;
 
+// Of the part's size: the gate before the residuals are known, and what it does not fall below; how far off points are
+// captured, from a given start, from the search and from a rival's.
+constexpr double kFirstGate = 0.03, kLeastGate = 1e-4;
+constexpr double kCaptureOfStart = 0.05, kCaptureOfSearch = 0.1, kCaptureOfRival = 0.08;
+// Of the gate's square: the fit by sides may be so much worse, else the triangles face inwards.
+constexpr double kSidedWorse = 0.2;
+constexpr double kSettled_mm = 0.1;  // a motion by the form's model that is not repeated
+// Of the part's size, at its corners: the same pose; the same rival.
+constexpr double kSamePose = 0.004, kSameRival = 0.01;
+constexpr double kLeastForm_mm = 0.2;  // that a point is off anyway
+
 struct Levels {
     Cloud fine, judges, few;
 };
@@ -136,7 +152,8 @@ bool stopped(const FitOptions& options) {
 
 // How clearly the points speak against a rival.
 double net(const FitRival& r) {
-    return static_cast<double>(r.for_best) - 3.0 * static_cast<double>(r.for_rival);
+    return static_cast<double>(r.for_best) -
+           static_cast<double>(kAgainstRival) * static_cast<double>(r.for_rival);
 }
 
 // Mean squared distance, at most the gate's: 0 perfect, 1 nothing of it near.
@@ -160,8 +177,8 @@ class Fit {
         levels_.judges = thinned(levels_.fine, 4000);
         levels_.few = thinned(levels_.fine, 500);
         out_.points = cloud.size();
-        gate_ = 0.03 * size_;
-        floor_ = std::max(1e-4 * size_, options.noise_mm * 3);
+        gate_ = kFirstGate * size_;
+        floor_ = std::max(kLeastGate * size_, options.noise_mm * 3);
     }
 
     Expected<SurfaceFit> run() {
@@ -200,7 +217,8 @@ class Fit {
     }
 
     bool take_best(const std::vector<Pose>& starts) {
-        const double capture = options_.start ? std::max(options_.start_mm, 0.05 * size_) : 0.1 * size_;
+        const double capture =
+            options_.start ? std::max(options_.start_mm, kCaptureOfStart * size_) : kCaptureOfSearch * size_;
         const bool sided = levels_.judges.has_towards();
         double least = 0, least_sided = 0;
         Pose best = Pose::Identity(), best_sided = Pose::Identity();
@@ -223,7 +241,7 @@ class Fit {
                                                  ? Text("from its start the scan finds no place on the part")
                                                  : Text("the scan finds no place on the part"));
         // A mesh whose triangles face inwards has no side that a sensor could have seen.
-        facing_ = sided && least_sided < least + 0.2;
+        facing_ = sided && least_sided < least + kSidedWorse;
         Refined r =
             refine(levels_.judges, surface_, facing_ ? best_sided : best, {gate_, floor_, 60, facing_});
         r = refine(levels_.fine, surface_, r.base_from_part,
@@ -245,7 +263,7 @@ class Fit {
             return refuse(FitStatus::no_fit,
                           Text("the fit left its start by more than {:g} mm or {:g} degrees",
                                options_.start_mm, options_.start_deg));
-        const double limit = options_.form_limit_mm > 0 ? options_.form_limit_mm : 0.015 * size_;
+        const double limit = options_.form_limit_mm > 0 ? options_.form_limit_mm : kFormLimit * size_;
         if (!(system_.median_mm <= limit))
             return refuse(FitStatus::no_fit,
                           Text("half of the points lie more than {:.2f} mm off the part", system_.median_mm));
@@ -312,7 +330,7 @@ class Fit {
             out_.form_mm = s.form_mm;
             out_.form_length_mm = s.length_mm;
             out_.base_from_part = retract(out_.base_from_part, to_tangent * s.motion);
-            if (s.motion.norm() < 0.1) break;
+            if (s.motion.norm() < kSettled_mm) break;
             moved_mm +=
                 4 * s.motion.norm();  // a rotation's entry is that at the spread; points lie farther out
         }
@@ -334,12 +352,11 @@ class Fit {
 
     // Rivals are refined without a bend, so it is the rigid fit that they are compared with.
     bool elsewhere(const Pose& pose) const {
-        const double near = std::max(0.004 * size_, 5 * (out_.noise_mm + out_.form_mm));
+        const double near = std::max(kSamePose * size_, 5 * (out_.noise_mm + out_.form_mm));
         if (corner_distance_mm(surface_, pose, rigid_) <= near) return false;
-        // What the stated covariance allows is no other place (chi^2 of 6 at 98 %).
         if (angle_rad(pose, out_.base_from_part) > 1) return true;
         const Vector6 d = difference(pose, out_.base_from_part);
-        return d.dot(solve_symmetric(out_.covariance, d).col(0)) > 15;
+        return d.dot(solve_symmetric(out_.covariance, d).col(0)) > kNoOtherPlace;
     }
 
     void look_for_rivals() {
@@ -355,19 +372,19 @@ class Fit {
             }
             // A symmetry of the part is a rival as it stands; a refinement from it may end elsewhere.
             if (angle_rad(start, out_.base_from_part) > 1) candidates.push_back(start);
-            candidates.push_back(
-                refine(levels_.few, surface_, start, {std::max(gate_, 0.08 * size_), floor_, 40, facing_})
-                    .base_from_part);
+            candidates.push_back(refine(levels_.few, surface_, start,
+                                        {std::max(gate_, kCaptureOfRival * size_), floor_, 40, facing_})
+                                     .base_from_part);
         }
         // What a point is off anyway.
-        const double form = std::max({0.2, 3 * out_.form_mm, 3 * local_judges_mm()});
+        const double form = std::max({kLeastForm_mm, 3 * out_.form_mm, 3 * local_judges_mm()});
         const double most = std::max(out_.gate_mm, 6 * form);
         for (const Pose& pose : candidates) {
             if (!elsewhere(pose) || !within_start(pose, surface_, options_)) continue;
             // Of several that ended near one another the one that is nearest to being as good.
             FitRival rival = compare(levels_.judges, surface_, rigid_, pose, form, most, facing_);
             const auto known = std::find_if(out_.rivals.begin(), out_.rivals.end(), [&](const FitRival& r) {
-                return corner_distance_mm(surface_, r.base_from_part, pose) < 0.01 * size_;
+                return corner_distance_mm(surface_, r.base_from_part, pose) < kSameRival * size_;
             });
             if (known == out_.rivals.end())
                 out_.rivals.push_back(rival);
@@ -427,8 +444,9 @@ Expected<void> check_fit_input(const Cloud& cloud, const Surface& surface, const
     if (cloud.size() < 50)
         return input_error(Text("the scan has {} points, too few to be fitted", cloud.size()), {},
                            "scan more of the part: at least 50 points");
+    constexpr double kFarthest_mm = 1e6;
     for (const auto& p : cloud.points)
-        if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 1e6)
+        if (!p.allFinite() || p.cwiseAbs().maxCoeff() > kFarthest_mm)
             return input_error("the scan has a point that is not finite or beyond 1 km", {},
                                "give millimetres");
     if (surface.empty()) return input_error("the part has no surface");

@@ -7,6 +7,13 @@
 
 namespace seamwright::fitting {
 
+// Of the part's size: where half of the residuals may lie if no limit is given.
+inline constexpr double kFormLimit = 0.015;
+// What the stated covariance allows is no other place: chi^2 of 6 at 98 %.
+inline constexpr double kNoOtherPlace = 15;
+// A point that speaks for a rival weighs against so many that speak for the best.
+inline constexpr std::size_t kAgainstRival = 3;
+
 // The residuals of a pose, point by point: what the form's model and the noise are taken from.
 struct Residual {
     Eigen::Vector3d place = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();  // base

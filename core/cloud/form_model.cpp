@@ -12,6 +12,12 @@ namespace {
 
 // Where a bend may have its middle: over the part and beyond its ends, so that a part held at its very end is no rarity.
 constexpr double kPlaceReach = 1.6;
+// Of the part's size: between these the series of the form's lengths begins.
+constexpr double kLeastShortest = 1e-4, kMostShortest = 0.2;
+// Of the residuals that a rigid motion leaves: where the series of the form's heights begins, and how far it goes on.
+constexpr double kLeastForm = 0.1, kFormRange = 100;
+constexpr double kLeastRms_mm = 1e-6;
+constexpr double kRidge = 1e-9;  // on the normal equations of the rigid motion
 constexpr int kModes = 3, kUnknowns = 6 + kModes;
 using Full = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 using FullVector = Eigen::Matrix<double, kUnknowns, 1>;
@@ -142,20 +148,21 @@ FormSolution solve_with_form(const std::vector<FormNode>& nodes, const PlateAxes
             if (j != i && m.distance(i, j) > 0) d = std::min(d, m.distance(i, j));
         nearest.push_back(d);
     }
-    const double shortest = std::clamp(median(nearest) / 2, 1e-4 * size_mm, 0.2 * size_mm);
+    const double shortest =
+        std::clamp(median(nearest) / 2, kLeastShortest * size_mm, kMostShortest * size_mm);
     // What a rigid motion leaves over is form and noise: where the nodes were taken does not count.
     const Eigen::MatrixXd rigid = m.rows.leftCols<6>();
-    const Matrix6 normal = rigid.transpose() * rigid + 1e-9 * Matrix6::Identity();
+    const Matrix6 normal = rigid.transpose() * rigid + kRidge * Matrix6::Identity();
     const Vector6 motion = normal.ldlt().solve(Vector6(rigid.transpose() * m.residuals));
-    const double rms = std::max(
-        1e-6, std::sqrt((m.residuals - rigid * motion).squaredNorm() / static_cast<double>(nodes.size())));
+    const double rms = std::max(kLeastRms_mm, std::sqrt((m.residuals - rigid * motion).squaredNorm() /
+                                                        static_cast<double>(nodes.size())));
     const std::vector<double> bends{0.01 * rms, 0.3 * rms, 1 * rms, 3 * rms, 10 * rms, 30 * rms};
     std::vector<Candidate> all;
     solve_field(m, 0, 1, bends, all);
     constexpr int kSteps = 8;
     for (int l = 0; l < kSteps; ++l)
         for (int s = 0; s < kSteps; ++s)
-            solve_field(m, rms * 0.1 * std::pow(100.0, s / (kSteps - 1.0)),
+            solve_field(m, rms * kLeastForm * std::pow(kFormRange, s / (kSteps - 1.0)),
                         shortest * std::pow(size_mm / shortest, l / (kSteps - 1.0)), bends, all);
     if (all.empty()) return out;
     double best = all.front().log_likelihood;

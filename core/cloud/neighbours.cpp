@@ -55,11 +55,13 @@ std::vector<char> statistical_inliers(const Cloud& cloud, int neighbours, double
     }
     const double n = static_cast<double>(cloud.size()), average = sum / n;
     const double limit = average + ratio * std::sqrt(std::max(0.0, squares / n - average * average));
-    for (std::size_t i = 0; i < cloud.size(); ++i) keep[i] = mean[i] <= limit + 1e-9;
+    constexpr double kRounding_mm = 1e-9;
+    for (std::size_t i = 0; i < cloud.size(); ++i) keep[i] = mean[i] <= limit + kRounding_mm;
     return keep;
 }
 
 void estimate_normals(Cloud& cloud, int neighbours) {
+    constexpr double kOnLine = 1e-4;  // of variances
     cloud.normals.assign(cloud.size(), Eigen::Vector3f::Zero());
     if (cloud.size() < 3) return;
     Neighbours near(cloud);
@@ -78,7 +80,7 @@ void estimate_normals(Cloud& cloud, int neighbours) {
         spread = spread / found - mean * mean.transpose();
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
         solver.computeDirect(spread);
-        if (!(solver.eigenvalues()[1] > 1e-4 * solver.eigenvalues()[2])) continue;  // on a line
+        if (!(solver.eigenvalues()[1] > kOnLine * solver.eigenvalues()[2])) continue;
         Eigen::Vector3f n = solver.eigenvectors().col(0).cast<float>();
         if (cloud.has_towards() && n.dot(cloud.towards[i]) < 0) n = -n;
         cloud.normals[i] = n;

@@ -10,6 +10,11 @@
 namespace seamwright {
 namespace {
 
+constexpr double kGateStands = 1.02;  // of the wanted gate: near enough to be called so
+constexpr double kGateFalls = 0.75;   // in a step, at most to
+// Steps that move no more than this, and this of the median residual, are calm.
+constexpr double kCalm_mm = 1e-4, kCalmShare = 1e-3;
+
 // Where a point looks from, in the part's frame; nothing is asked of a point without a known side.
 const Eigen::Vector3d* side_of(const Cloud& cloud, std::size_t i, const Eigen::Matrix3d& part_from_base,
                                bool facing, Eigen::Vector3d& side) {
@@ -53,7 +58,7 @@ FitSystem linearize(const Cloud& cloud, const Surface& surface, const Pose& base
         spread += (m.place - s.middle).squaredNorm();
         sizes.push_back(std::abs(m.residual));
     }
-    s.spread_mm = std::max(1e-3, std::sqrt(spread / static_cast<double>(matches.size())));
+    s.spread_mm = std::max(kLeastSpread_mm, std::sqrt(spread / static_cast<double>(matches.size())));
     s.median_mm = median(sizes);
     for (const Match& m : matches) {
         const double share = m.residual / gate_mm, in = 1 - share * share;
@@ -97,10 +102,10 @@ Refined refine(const Cloud& cloud, const Surface& surface, const Pose& start, co
         const Matrix6 to_tangent =
             tangent_of_motion(out.base_from_part, out.system.middle, out.system.spread_mm);
         out.base_from_part = retract(out.base_from_part, to_tangent * motion);
-        const double wanted = std::max(options.floor_mm, 4.5 * kMadToSigma * out.system.median_mm);
-        const bool gate_stands = out.gate_mm <= 1.02 * wanted;
-        out.gate_mm = std::max(std::min(out.gate_mm, wanted), 0.75 * out.gate_mm);
-        calm = gate_stands && longest < 1e-4 + 1e-3 * out.system.median_mm ? calm + 1 : 0;
+        const double wanted = std::max(options.floor_mm, kGateSigmas * kMadToSigma * out.system.median_mm);
+        const bool gate_stands = out.gate_mm <= kGateStands * wanted;
+        out.gate_mm = std::max(std::min(out.gate_mm, wanted), kGateFalls * out.gate_mm);
+        calm = gate_stands && longest < kCalm_mm + kCalmShare * out.system.median_mm ? calm + 1 : 0;
     }
     out.settled = calm >= 2;
     out.system = linearize(cloud, surface, out.base_from_part, out.gate_mm, options.facing);

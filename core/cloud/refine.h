@@ -5,7 +5,7 @@
 // the part's normal there. With the part moved by a about the points' middle c and turned by w,
 //     r' = r - [n, (q - c) x n] . (a, w),
 // so the step is the weighted least squares of r on these rows. Weights are Tukey's with a gate that falls from the
-// capture range to 4.5 robust standard deviations of the residuals; points nearest to a border tell nothing about the
+// capture range to kGateSigmas standard deviations of the residuals; points nearest to a border tell nothing about the
 // sheet's plane and weigh nothing. Directions whose mean squared row is below kOpenShare are not moved.
 
 #include "core/cloud/surface.h"
@@ -15,6 +15,11 @@ namespace seamwright {
 // Mean of (n . motion)^2 for a motion of 1 mm at the points' spread below which a direction counts as open: a surface
 // that leans by less than a degree against sliding along itself.
 inline constexpr double kOpenShare = 3e-4;
+
+// The gate stands at so many robust standard deviations of the residuals.
+inline constexpr double kGateSigmas = 4.5;
+// What the points' spread counts as at least: rotations are scaled by it.
+inline constexpr double kLeastSpread_mm = 1e-3;
 
 struct RefineOptions {
     double gate_mm = 50;    // capture range at the start

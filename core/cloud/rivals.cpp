@@ -11,9 +11,12 @@
 namespace seamwright::fitting {
 namespace {
 
-// Fewer points than these speak for nothing: beside them, three times the rival's own are asked for.
+// Fewer points than these speak for nothing: beside them, kAgainstRival times the rival's own are asked for.
 constexpr double kLeastShare = 0.004;
 constexpr std::size_t kLeastPoints = 8;
+constexpr double kLeastHalf_mm = 1e-3;  // of the part's thickness
+// cos of 6 degrees: farther from the drawing's axes the part's own are others.
+constexpr double kOwnAxes = 0.995;
 
 Eigen::Matrix3d principal_axes(const Surface& surface) {
     const Cloud points = surface.sampled(1000, 7);
@@ -35,7 +38,7 @@ PlateAxes plate_axes(const Surface& surface, const Pose& base_from_part) {
     PlateAxes plate;
     plate.middle_mm = base_from_part * Eigen::Vector3d(axes * own.center());
     plate.axes = base_from_part.linear() * axes;
-    plate.half_mm = (own.sizes() / 2).cwiseMax(1e-3);
+    plate.half_mm = (own.sizes() / 2).cwiseMax(kLeastHalf_mm);
     return plate;
 }
 
@@ -68,13 +71,13 @@ std::vector<Pose> rival_starts(const Surface& surface, const Pose& best, const F
     const Eigen::Matrix3d own = principal_axes(surface);
     std::vector<Eigen::Vector3d> axes{Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(),
                                       Eigen::Vector3d::UnitZ()};
-    if (own.cwiseAbs().rowwise().maxCoeff().minCoeff() < 0.995)
+    if (own.cwiseAbs().rowwise().maxCoeff().minCoeff() < kOwnAxes)
         for (int k = 0; k < 3; ++k) axes.emplace_back(own.col(k));
+    static constexpr double kTurns_deg[] = {180, 90, -90, 120, -120, 8, -8};      // symmetries, and tilts
+    static constexpr double kShifts[] = {0.02, -0.02, 0.06, -0.06, 0.18, -0.18};  // of the part's size
     for (const Eigen::Vector3d& axis : axes) {
-        for (const double deg : {180.0, 90.0, -90.0, 120.0, -120.0, 8.0, -8.0})
-            moved(axis, rad_from_deg(deg), Eigen::Vector3d::Zero());
-        for (const double share : {0.02, -0.02, 0.06, -0.06, 0.18, -0.18})
-            moved(axis, 0, share * surface.size_mm() * axis);
+        for (const double deg : kTurns_deg) moved(axis, rad_from_deg(deg), Eigen::Vector3d::Zero());
+        for (const double share : kShifts) moved(axis, 0, share * surface.size_mm() * axis);
     }
     return out;
 }
@@ -91,7 +94,7 @@ FitRival compare(const Cloud& judges, const Surface& surface, const Pose& best, 
     }
     const auto least =
         std::max(kLeastPoints, static_cast<std::size_t>(kLeastShare * static_cast<double>(a.size())));
-    r.told_apart = r.for_best >= least + 3 * r.for_rival;
+    r.told_apart = r.for_best >= least + kAgainstRival * r.for_rival;
     return r;
 }
 

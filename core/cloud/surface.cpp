@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kSmoothCos = 0.819;  // cos of 35 degrees
 constexpr double kGrazing = 0.1;      // cos of 84 degrees: no stripe is seen on a face that leans away more
+constexpr double kGrain = 1e-6, kLeastGrain_mm = 1e-9;  // of the part's size: corners as near are one
 constexpr std::int32_t kLeafFaces = 4;
 
 using Corners = std::array<int, 3>;
@@ -19,7 +20,7 @@ using Corners = std::array<int, 3>;
 // One number for corners that are one place.
 std::vector<int> welded(const TriangleMesh& mesh) {
     const Eigen::AlignedBox3d box = mesh.box();
-    const double grain = std::max(1e-9, 1e-6 * box.diagonal().norm());
+    const double grain = std::max(kLeastGrain_mm, kGrain * box.diagonal().norm());
     std::map<std::array<std::int64_t, 3>, int> known;
     std::vector<int> one(mesh.vertices.size());
     for (std::size_t i = 0; i < one.size(); ++i) {

@@ -13,9 +13,18 @@ constexpr double kFarthestMm = 1e7;
 // Priors wider than these are none, and the first order would not hold: standard deviations.
 constexpr double kLargestMm = 1000, kLargestRad = 0.5, kLargestScale = 0.1, kLargestShare = 10;
 
+constexpr double kOrthonormal = 1e-4;  // what R R^T may be off the identity
+constexpr double kSmallestWeight = 1e-6, kLargestWeight = 1e6;
+constexpr double kSmallestSigmaMm = 1e-9, kLargestSigmaMm = 1e6;
+constexpr double kSmallestVarianceMm2 = kSmallestSigmaMm * kSmallestSigmaMm;
+constexpr double kLargestVarianceMm2 = kLargestSigmaMm * kLargestSigmaMm;
+constexpr double kAsymmetry = 1e-9;  // of a covariance's scale
+// What a correlation must leave: beyond it a direction would count as known exactly.
+constexpr double kUncorrelated = 1e-9;
+
 bool is_pose(const Pose& pose) {
     const Eigen::Matrix3d r = pose.linear();
-    return (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < 1e-4 &&
+    return (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < kOrthonormal &&
            r.determinant() > 0;
 }
 
@@ -107,23 +116,23 @@ Expected<void> check_spot(std::size_t n, const SpotObservation& s, bool measured
     if (measured && bad_point(s.measured_mm))
         return input_error(Text("the measured point {}", far), where(n, s, "measured"),
                            "leave spots that were not measured out of the list");
-    if (!s.weights.allFinite() || s.weights.minCoeff() < 0 || s.weights.maxCoeff() > 1e6)
+    if (!s.weights.allFinite() || s.weights.minCoeff() < 0 || s.weights.maxCoeff() > kLargestWeight)
         return input_error("a weight is negative, not finite or above 1e6", where(n, s, "weights"),
                            "use 0 for an axis that is not observed, else 1 or a share of it");
     for (int i = 0; i < 3; ++i) {
-        if (s.weights[i] > 0 && s.weights[i] < 1e-6)
+        if (s.weights[i] > 0 && s.weights[i] < kSmallestWeight)
             return input_error("a weight lies between 0 and 1e-6", where(n, s, "weights"),
                                "use 0 for \"not observed\"");
     }
-    if (!(s.sigma_mm >= 1e-9) || !(s.sigma_mm <= 1e6))
+    if (!(s.sigma_mm >= kSmallestSigmaMm) || !(s.sigma_mm <= kLargestSigmaMm))
         return input_error("sigma is not a positive number of millimetres", where(n, s, "sigma_mm"),
                            "give the standard deviation of a measured coordinate, e.g. 0.05");
     if (s.covariance_mm2) {
         const Eigen::Matrix2d& c = *s.covariance_mm2;
         const double scale = std::sqrt(c(0, 0) * c(1, 1));
-        // Correlation at most 1 - 1e-9: beyond it a direction would count as known exactly.
-        if (!c.allFinite() || !(c(0, 0) >= 1e-18) || !(c(1, 1) >= 1e-18) || !(scale <= 1e12) ||
-            std::abs(c(0, 1) - c(1, 0)) > 1e-9 * scale || !(std::abs(c(0, 1)) <= (1 - 1e-9) * scale))
+        if (!c.allFinite() || !(c(0, 0) >= kSmallestVarianceMm2) || !(c(1, 1) >= kSmallestVarianceMm2) ||
+            !(scale <= kLargestVarianceMm2) || std::abs(c(0, 1) - c(1, 0)) > kAsymmetry * scale ||
+            !(std::abs(c(0, 1)) <= (1 - kUncorrelated) * scale))
             return input_error("the covariance is not a symmetric, positive definite 2 x 2 matrix in mm^2",
                                where(n, s, "covariance_mm2"),
                                "give that of the measured x and z, or sigma_mm alone");

@@ -11,6 +11,18 @@
 #include "core/numbers.h"
 
 namespace seamwright {
+namespace {
+
+constexpr double kCurveSettled = 1e-12;  // of 1 and the coefficients
+// Robust sigma: from the one on a point weighs nothing (Tukey), within the other it counts in the last fit. Neither is less
+// than kCurveLeastGate.
+constexpr double kCurveTukey = 6, kCurveKept = 4, kCurveLeastGate = 1e-9;
+constexpr double kCurveRounding = 1e-18;    // squared residual: no noise to test against
+constexpr double kCurveNoMisfit = 1e-14;    // squared residual: nothing is left to be explained
+constexpr double kCurveSignificant = 1e-3;  // of the F test for a higher order
+
+}  // namespace
+
 PolynomialFit fit_polynomial(std::span<const double> y, std::span<const double> v, int order) {
     PolynomialFit out;
     out.order = order;
@@ -32,22 +44,22 @@ PolynomialFit fit_polynomial(std::span<const double> y, std::span<const double> 
         const LeastSquares solved = least_squares(root.asDiagonal() * a, root.cwiseProduct(value));
         if (solved.rank < order + 1) return out;
         const Eigen::VectorXd next = solved.x;
-        const bool settled = round > 0 && (next - c).norm() <= 1e-12 * (1 + c.norm());
+        const bool settled = round > 0 && (next - c).norm() <= kCurveSettled * (1 + c.norm());
         c = next;
         residual = value - a * c;
         std::vector<double> size(static_cast<std::size_t>(n));
         for (Eigen::Index i = 0; i < n; ++i) size[static_cast<std::size_t>(i)] = std::abs(residual[i]);
         robust = kMadToSigma * median(size);
         if (settled || round == 29) break;
-        const double cut = std::max(6.0 * robust, 1e-9);
+        const double cut = std::max(kCurveTukey * robust, kCurveLeastGate);
         for (Eigen::Index i = 0; i < n; ++i) {
             const double u = residual[i] / cut;
             weight[i] = std::abs(u) < 1 ? (1 - u * u) * (1 - u * u) : 0.0;
         }
     }
-    // The last word is plain least squares on what lies within 4 robust sigma, so that its covariance is the
+    // The last word is plain least squares on what lies within kCurveKept robust sigma, so that its covariance is the
     // usual one.
-    const double keep = std::max(4.0 * robust, 1e-9);
+    const double keep = std::max(kCurveKept * robust, kCurveLeastGate);
     std::vector<Eigen::Index> kept;
     for (Eigen::Index i = 0; i < n; ++i) {
         if (std::abs(residual[i]) <= keep) kept.push_back(i);
@@ -102,11 +114,11 @@ PolynomialFit fit_lowest_order(std::span<const double> y, std::span<const double
         // A straight line may reject as outliers what a curve explains: the share kept counts as well.
         const bool keeps_more = higher.used > best.used + 1;
         const int extra = higher.order - best.order;
-        const double floor =
-            1e-18 * higher.degrees;  // residuals at rounding level are no noise to test against
+        const double floor = kCurveRounding * higher.degrees;
         const double f =
             (best.sum_squares - higher.sum_squares) / extra / ((higher.sum_squares + floor) / higher.degrees);
-        const bool better = best.sum_squares > 1e-14 * best.used && f_test(f, extra, higher.degrees) < 1e-3;
+        const bool better = best.sum_squares > kCurveNoMisfit * best.used &&
+                            f_test(f, extra, higher.degrees) < kCurveSignificant;
         if (better || keeps_more) best = higher;
     }
     return best;

@@ -55,12 +55,13 @@ void report_spread(const RegionSystem& system, const Spread& spread, const Obser
     } else {
         // Singular: infinite where a degree of freedom takes part in an undetermined direction, nothing known
         // elsewhere.
+        constexpr double kTakesPart = 1e-6;  // of a direction of length 1
         out.covariance.setZero();
         for (Eigen::Index k = 0; k < seen.weak.cols(); ++k) {
             const Vector6 t = system.tangent_from_xi(seen.weak.col(k), state);
             for (int i = 0; i < 6; ++i) {
                 const double size = i < 3 ? std::abs(t[i]) : std::abs(t[i]) * system.spread_mm();
-                if (size > 1e-6) out.covariance(i, i) = kInfinity;
+                if (size > kTakesPart) out.covariance(i, i) = kInfinity;
             }
         }
         for (int i = 0; i < 3; ++i) {
@@ -141,8 +142,9 @@ struct RegionSolver::Impl {
                 "too small",
                 scatter));
         for (std::size_t n = 0; n < spots.size(); ++n) {
+            constexpr double kBeyondToldMm = 0.5;
             const double beyond = system.beyond_curve_mm(n, fit.state);
-            if (beyond > 0.5)
+            if (beyond > kBeyondToldMm)
                 add(Text("{} slid {:.1f} mm beyond the taught range of its contour curve", spots[n].id,
                          beyond));
         }

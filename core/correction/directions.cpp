@@ -17,13 +17,17 @@ using Columns = Eigen::MatrixXd;  // 3 rows
 constexpr double kTranslationShare = 0.15;
 // cos of about 2.5 degrees: closer to an axis of the work object than this is called by the axis.
 constexpr double kAlongAxis = 0.999;
+constexpr double kWrittenZero = 0.005, kWrittenZeroMm = 0.05;  // below: 0 as it is written, and no "-0.00"
+constexpr double kOneDirection = 1e-3;  // singular value of translations that are none of their own
+// Of the spread, in a radian: an axis that moves the origin by less runs through it.
+constexpr double kThroughOrigin = 0.05;
 
 Eigen::Vector3d tidy(Eigen::Vector3d v) {
     Eigen::Index largest;
     v.cwiseAbs().maxCoeff(&largest);
     if (v[largest] < 0) v = -v;
     for (int i = 0; i < 3; ++i) {
-        if (std::abs(v[i]) < 0.005) v[i] = 0;  // no "-0.00"
+        if (std::abs(v[i]) < kWrittenZero) v[i] = 0;
     }
     return v;
 }
@@ -65,7 +69,7 @@ std::string axis_words(const Eigen::Vector3d& direction) {
 }
 
 double no_minus(double v) {
-    return std::abs(v) < 0.05 ? 0.0 : v;
+    return std::abs(v) < kWrittenZeroMm ? 0.0 : v;
 }
 
 }  // namespace
@@ -86,7 +90,7 @@ std::vector<Text> name_directions(const Eigen::Ref<const Eigen::Matrix<double, 6
         const Columns translations = ordered.topRows(3).rightCols(u.cols() - turning);
         const SingularValues svd = singular_values(translations);
         Eigen::Index rank = 0;
-        for (Eigen::Index k = 0; k < svd.values.size(); ++k) rank += svd.values[k] > 1e-3;
+        for (Eigen::Index k = 0; k < svd.values.size(); ++k) rank += svd.values[k] > kOneDirection;
         pure = svd.u.leftCols(rank);
         const Columns named = nice_basis(pure);
         for (Eigen::Index k = 0; k < named.cols(); ++k)
@@ -113,7 +117,7 @@ std::vector<Text> name_directions(const Eigen::Ref<const Eigen::Matrix<double, 6
         at_origin -= pure * (pure.transpose() * at_origin);
         const std::string direction = axis_words(axis);
         Text about = direction[0] == '(' ? Text("the axis {}", direction) : Text(direction);
-        if (at_origin.norm() > 0.05 * spread)
+        if (at_origin.norm() > kThroughOrigin * spread)
             about = Text("{} through ({:.1f}, {:.1f}, {:.1f})", about, no_minus(point.x()),
                          no_minus(point.y()), no_minus(point.z()));
         if (std::abs(pitch) > kTranslationShare * spread)

@@ -100,12 +100,14 @@ std::vector<std::size_t> uncontrolled_spots(const RegionSystem& system, const Li
 }
 
 std::string axis_name(Eigen::Vector3d v) {
+    constexpr double kByItsName = 0.999;    // cos of 2.6 degrees: nearer to an axis it is called by it
+    constexpr double kNoMinusZero = 0.005;  // below it 0 is written
     Eigen::Index largest;
     v.cwiseAbs().maxCoeff(&largest);
     if (v[largest] < 0) v = -v;
     for (int i = 0; i < 3; ++i) {
-        if (v[i] > 0.999) return std::string(1, "XYZ"[i]);
-        if (std::abs(v[i]) < 0.005) v[i] = 0;
+        if (v[i] > kByItsName) return std::string(1, "XYZ"[i]);
+        if (std::abs(v[i]) < kNoMinusZero) v[i] = 0;
     }
     return fmt::format("({:.2f}, {:.2f}, {:.2f})", v.x(), v.y(), v.z());
 }
@@ -147,10 +149,11 @@ std::vector<Candidate> candidates(std::span<const SpotObservation> spots) {
 
     std::vector<Eigen::Vector3d> edges{Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(),
                                        Eigen::Vector3d::UnitZ()};
+    constexpr double kSameEdge = 0.97;  // cos of 14 degrees
     for (const SpotObservation& s : spots) {
         const Eigen::Vector3d edge = s.workobject_from_sensor.linear().col(1);
         const bool known = std::any_of(edges.begin(), edges.end(), [&](const Eigen::Vector3d& o) {
-            return std::abs(o.dot(edge)) > 0.97;
+            return std::abs(o.dot(edge)) > kSameEdge;
         });
         if (!known && edges.size() < 10) edges.push_back(edge);
     }

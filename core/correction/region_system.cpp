@@ -13,6 +13,21 @@ namespace {
 constexpr double kSingular = 1e-13;
 constexpr double kStepMm = 1e-9, kStepRad = 1e-12;
 constexpr double kRough = 1e8;  // in these units: 0.1 mm
+// Near the minimum a step is no longer than this, in these units, and its square than this of the last one.
+constexpr double kNear = 1e4, kShrinks = 0.1;
+constexpr double kNoLimit = 1e9;   // mm or degrees: wider limits are as good as none
+constexpr double kUnseen = 1e-10;  // of the largest eigenvalue: nothing is known
+// Near the gimbal lock: determinant of the free angles' axes; cos B.
+constexpr double kLockedAxes = 1e-9, kLockedCos = 1e-3;
+// Levenberg's damping, of a unit diagonal: where the matrix is singular, and where a step made things worse, it starts at
+// the first and is given up at the last; after a step that helped it falls, and below kLeastDamping is none.
+constexpr double kSingularDamping = 1e-8, kMostSingularDamping = 1e8;
+constexpr double kWorseDamping = 1e-4, kMostWorseDamping = 1e12;
+constexpr double kLeastDamping = 1e-7, kDampingFalls = 0.1, kDampingRises = 10;
+// Of 1 + cost: a gain that drowns in rounding, what the cost may then rise and what else; a gain that no longer matters,
+// once it is more than kStalls of the last.
+constexpr double kDrowns = 1e-9, kDrownedRise = 1e-6, kRise = 1e-12;
+constexpr double kNoGain = 1e-14, kStalls = 0.25;
 
 // Rz(A) Ry(B) Rx(C), written out: an angle of 0 leaves exact zeros, so that it is 0 when read back.
 Eigen::Matrix3d rotation_from_abc(const Eigen::Vector3d& abc) {
@@ -239,9 +254,9 @@ Spread RegionSystem::spread(const Linearization& lin, const State& state) const 
 }
 
 Vector6 RegionSystem::per_limit() const {
-    const double limit_mm = std::min(options_.sigma_limit_mm, 1e9);
+    const double limit_mm = std::min(options_.sigma_limit_mm, kNoLimit);
     const double limit_rotation =
-        std::min(limit_mm, rad_from_deg(std::min(options_.sigma_limit_deg, 1e9)) * spread_);
+        std::min(limit_mm, rad_from_deg(std::min(options_.sigma_limit_deg, kNoLimit)) * spread_);
     Vector6 out;
     out << Eigen::Vector3d::Constant(1 / limit_mm), Eigen::Vector3d::Constant(1 / limit_rotation);
     return out;
@@ -311,7 +326,7 @@ Observability RegionSystem::observability(const Linearization& lin, const State&
         const double largest = std::max(0.0, eigen.values[free_count_ - 1]);
         for (int k = 0; k < free_count_; ++k) {
             const double lambda = eigen.values[k];
-            const bool none = !(lambda > 1e-10 * largest) || largest == 0;
+            const bool none = !(lambda > kUnseen * largest) || largest == 0;
             out.singular = out.singular || none;
             sigma[k] = none ? std::numeric_limits<double>::infinity() : inflation / std::sqrt(lambda);
         }
@@ -363,14 +378,14 @@ Eigen::Matrix3d RegionSystem::abc_from_rotation(const State& state) const {
         for (int i = 0; i < 3; ++i)
             for (int k = 0; k < i; ++k) square(i, k) = square(k, i) = g.col(i).dot(g.col(k));
         // Unit axes: the determinant is near 0 in the gimbal lock alone.
-        if (square.determinant() > 1e-9) return square.inverse() * g.transpose();
+        if (square.determinant() > kLockedAxes) return square.inverse() * g.transpose();
         return least_squares(g, Eigen::Matrix3d::Identity()).x;
     }
     // Closed form of kuka_jacobian away from the gimbal lock: the axes of A, B, C are Z, the turned Y,
     // and R X.
     const Eigen::Vector3d x = state.rotation.col(0);
     const double cos_b = std::hypot(x.x(), x.y());
-    if (!(cos_b > 1e-3)) return kuka_jacobian(state.rotation);
+    if (!(cos_b > kLockedCos)) return kuka_jacobian(state.rotation);
     Eigen::Matrix3d axes;
     axes << 0, -x.y() / cos_b, x.x(), 0, x.x() / cos_b, x.y(), 1, 0, x.z();
     return axes.inverse();
@@ -459,8 +474,8 @@ void RegionSystem::fit(std::span<const double> factor, Fit& out) const {
         Matrix6 scaled = scale.asDiagonal() * h * scale.asDiagonal();
         scaled.diagonal().array() += damping;
         if (!factorise(scaled, lower)) {
-            damping = std::max(10 * damping, 1e-8);
-            if (damping > 1e8) return;
+            damping = std::max(kDampingRises * damping, kSingularDamping);
+            if (damping > kMostSingularDamping) return;
             continue;
         }
         const Vector6 theta = -(scale.asDiagonal() * solve_factorised(lower, scale.asDiagonal() * g));
@@ -473,7 +488,8 @@ void RegionSystem::fit(std::span<const double> factor, Fit& out) const {
         const double size =
             std::max(xi.head<3>().norm() / kStepMm, xi.tail<3>().norm() / (kStepRad * spread_));
         // Steps with the sensors' errors follow, which leave the square of it.
-        const bool small = size < (shares() ? kRough : 1) || (size < 1e4 && size * size < 0.1 * last_size);
+        const bool small =
+            size < (shares() ? kRough : 1) || (size < kNear && size * size < kShrinks * last_size);
         if (damping == 0 && small) {
             out.state = trial;
             out.converged = true;
@@ -482,21 +498,21 @@ void RegionSystem::fit(std::span<const double> factor, Fit& out) const {
         linearize(trial, factor, trial_lin);
         // Near the minimum the change of the cost drowns in its rounding, which grows with the distance of
         // the origin: there the step is trusted.
-        const double slack = gain < 1e-9 * (1 + out.lin.cost) ? 1e-6 : 1e-12;
+        const double slack = gain < kDrowns * (1 + out.lin.cost) ? kDrownedRise : kRise;
         if (std::isfinite(trial_lin.cost) && trial_lin.cost <= out.lin.cost + slack * (1 + out.lin.cost)) {
             out.state = trial;
             out.lin = trial_lin;
-            damping = damping < 1e-7 ? 0 : 0.1 * damping;
+            damping = damping < kLeastDamping ? 0 : kDampingFalls * damping;
             // Rounding keeps the step from shrinking further although it no longer matters (1e-7 of a sigma).
-            if (damping == 0 && gain < 1e-14 * (1 + out.lin.cost) && gain > 0.25 * last_gain) {
+            if (damping == 0 && gain < kNoGain * (1 + out.lin.cost) && gain > kStalls * last_gain) {
                 out.converged = true;
                 break;
             }
             last_gain = gain;
             last_size = damping == 0 ? size : 0;
         } else {
-            damping = std::max(10 * damping, 1e-4);
-            if (damping > 1e12) return;
+            damping = std::max(kDampingRises * damping, kWorseDamping);
+            if (damping > kMostWorseDamping) return;
         }
     }
     if (out.converged && shares()) fit_shared(factor, out);

@@ -28,7 +28,8 @@ Eigen::Vector3d displaced_measure(const SpotObservation& spot, const Displacemen
     const ContourCurve curve = spot.curve && spot.weights.y() == 0 ? *spot.curve : ContourCurve{};
     double y = 0;
     Eigen::Vector3d at = moved * r;
-    constexpr int kSteps = 8;  // of Newton; the bend of a contour is gentle
+    constexpr int kSteps = 8;               // of Newton; the bend of a contour is gentle
+    constexpr double kAcrossTravel = 1e-3;  // of the contour's direction along Y: it does not come by
     for (int step = 0; step < kSteps; ++step) {
         const double inside =
             spot.curve ? std::clamp(y, curve.valid_from_mm, curve.valid_to_mm) : 0.0;  // tangent beyond
@@ -42,7 +43,7 @@ Eigen::Vector3d displaced_measure(const SpotObservation& spot, const Displacemen
         shape(curve.z_coefficients, z, dz);
         at = moved * (r + Eigen::Vector3d(x, y, z));
         const double along = (moved.linear() * Eigen::Vector3d(dx, 1, dz)).y();
-        if (!(std::abs(along) > 1e-3)) return r;
+        if (!(std::abs(along) > kAcrossTravel)) return r;
         y -= (at.y() - r.y()) / along;
     }
     return {at.x(), r.y(), at.z()};

@@ -20,6 +20,8 @@ constexpr double kMostWork = 30000;
 constexpr double kGross = 400.0;
 // A direction of a spot's residual with less redundancy than this says nothing.
 constexpr double kNoRedundancy = 1e-6;
+// Below this one the closed form is not taken.
+constexpr double kPlainRedundancy = 1e-3;
 
 // Statistic e^T S^+ e of one spot over its observed axes, and its degrees.
 struct Studentised {
@@ -121,7 +123,8 @@ Agreement agreement(const RegionSystem& system, const RegionSystem::Fit& fit, co
                 const double xx = 1 - v * (jxx + left(0, 0)), xz = -v * (jxz + left(0, 2)),
                              zz = 1 - v * (jzz + left(2, 2));
                 const double det = xx * zz - xz * xz;
-                if (!(xx > 1e-3 && zz > 1e-3 && det > 1e-3 * xx * zz)) return std::nullopt;
+                if (!(xx > kPlainRedundancy && zz > kPlainRedundancy && det > kPlainRedundancy * xx * zz))
+                    return std::nullopt;
                 return v * (zz * e.x() * e.x() - 2 * xz * e.x() * e.z() + xx * e.z() * e.z()) / det;
             };
             if (harmless > 0)
@@ -229,7 +232,11 @@ bool WrongSpotSearch::graduated(const RegionSystem& system, double level, std::v
     std::vector<double> square(n, 0.0);
     Eigen::Vector3d e;
     Rows rows;
-    double width = 0;  // of the weight function, in squared sigmas
+    // Squared sigmas: the width of the weight function at last, and a spot that is wrong to begin with.
+    constexpr double kNarrowest = 9, kFarOff = 36;
+    constexpr double kNarrows = 0.6;  // from round to round
+    constexpr double kLeastWeight = 1e-12;
+    double width = 0;
     for (int round = 0; round < 60; ++round) {
         system.fit(soft_, soft_fit);
         if (!soft_fit.state.translation.allFinite()) return false;
@@ -243,16 +250,16 @@ bool WrongSpotSearch::graduated(const RegionSystem& system, double level, std::v
             }
             largest = std::max(largest, square[k]);
         }
-        width = round == 0 ? largest : std::max(9.0, 0.6 * width);
+        width = round == 0 ? largest : std::max(kNarrowest, kNarrows * width);
         for (std::size_t k = 0; k < n; ++k) {
             const double u = width / (width + square[k]);
-            soft_[k] = std::max(1e-12, u * u);
+            soft_[k] = std::max(kLeastWeight, u * u);
         }
-        if (width <= 9.0 && round > 5) break;
+        if (width <= kNarrowest && round > 5) break;
     }
     trial_.assign(n, 1.0);
     for (std::size_t k = 0; k < n; ++k) {
-        if (square[k] > 36.0) trial_[k] = 0;
+        if (square[k] > kFarOff) trial_[k] = 0;
     }
     RegionSystem::Fit hard;
     for (int round = 0; round < 10; ++round) {

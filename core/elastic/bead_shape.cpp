@@ -18,6 +18,8 @@ constexpr int kLengths = 9, kHeights = 9;
 constexpr double kLowestHeight = 0.05, kHighestHeight = 50;  // tau, mm per mm
 constexpr double kOwnNoise = 1e-3;                           // of a shape at a spot, mm per mm
 constexpr double kNegligible = 1e-3;                         // of the likelihood
+constexpr double kTrendSingular = 1e-13;                     // reciprocal condition
+constexpr double kSeenShare = 1e-6;  // of the direction that is seen best: less is not seen
 
 double matern52(double x) {
     const double r = std::sqrt(5.0) * x;
@@ -94,7 +96,7 @@ struct BeadShape::Impl {
             const MatrixXd heavy = root.solve(t);
             const MatrixXd inner = t.transpose() * heavy;
             const Eigen::LDLT<MatrixXd> inner_root(inner);
-            if (inner_root.info() != Eigen::Success || inner_root.rcond() < 1e-13) return false;
+            if (inner_root.info() != Eigen::Success || inner_root.rcond() < kTrendSingular) return false;
             s.trend_covariance.push_back(inner_root.solve(MatrixXd::Identity(inner.rows(), inner.cols())));
             s.trend_gain.push_back(inner_root.solve(heavy.transpose()));
             s.trend.push_back(s.trend_gain.back() * seen[m]);
@@ -137,7 +139,7 @@ Expected<BeadShape> BeadShape::make(const ElasticModes& modes, std::span<const B
     for (std::size_t n = 0; n < spots.size(); ++n) {
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(modes.spots[n].seen);
         for (int i = 0; i < 3; ++i) {
-            if (!(eigen.eigenvalues()[i] > 1e-6 * eigen.eigenvalues()[2])) continue;
+            if (!(eigen.eigenvalues()[i] > kSeenShare * eigen.eigenvalues()[2])) continue;
             rows.emplace_back(eigen.eigenvectors().col(i), 1 / eigen.eigenvalues()[i]);
             impl->row_spot.push_back(static_cast<Index>(n));
         }

@@ -221,14 +221,15 @@ Text objection(const Joint& joint, const ElasticModes& modes, const ElasticOptio
 
 Text not_as_learnt(std::span<const SpotObservation> spots, std::span<const int> slot_of,
                    const ElasticModes& modes) {
+    constexpr double kAsLearnt = 1e-6;  // mm, and a rotation's entries
     for (std::size_t n = 0; n < spots.size(); ++n) {
         if (slot_of[n] < 0)
             return Text("spot {} was added since the modes were learnt: learn them again", spots[n].id);
         const ElasticSpot& then = modes.spots[static_cast<std::size_t>(slot_of[n])];
         const bool same = (then.workobject_from_sensor.matrix() - spots[n].workobject_from_sensor.matrix())
                                   .cwiseAbs()
-                                  .maxCoeff() < 1e-6 &&
-                          (then.reference_mm - spots[n].reference_mm).cwiseAbs().maxCoeff() < 1e-6 &&
+                                  .maxCoeff() < kAsLearnt &&
+                          (then.reference_mm - spots[n].reference_mm).cwiseAbs().maxCoeff() < kAsLearnt &&
                           then.weights == spots[n].weights;
         if (!same)
             return Text("spot {} was taught anew since the modes were learnt: learn them again", spots[n].id);

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/acceptance/distributions.h"
+#include "core/acceptance/levels.h"
 #include "core/elastic/modes.h"
 #include "core/numbers.h"
 
@@ -15,6 +16,13 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+constexpr double kLeastKappa = 1e-6;
+constexpr double kLeastMode = 0.05;  // of kappa: variance that a mode starts with
+// Of the loading and kappa: a step that changes them by less is the last.
+constexpr double kSizeSettled = 1e-7;
+constexpr double kInformationAsymmetry = 1e-9, kInformationNegative = 1e-7;  // of its largest entry
+constexpr double kToldShare = 1e-6;  // of the direction that the rows tell best
 
 // A row along the directions that the rows tell.
 struct Told {
@@ -74,11 +82,12 @@ Model start(std::span<const Told> rows, Index modes) {
         scatter += t * t.transpose() / n;
     }
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scatter);
-    model.kappa =
-        std::max(1e-6, r > modes ? eigen.eigenvalues().head(r - modes).mean() : eigen.eigenvalues()[0]);
+    model.kappa = std::max(kLeastKappa,
+                           r > modes ? eigen.eigenvalues().head(r - modes).mean() : eigen.eigenvalues()[0]);
     model.loading.resize(r, modes);
     for (Index k = 0; k < modes; ++k) {
-        const double variance = std::max(eigen.eigenvalues()[r - 1 - k] - model.kappa, 0.05 * model.kappa);
+        const double variance =
+            std::max(eigen.eigenvalues()[r - 1 - k] - model.kappa, kLeastMode * model.kappa);
         model.loading.col(k) =
             std::sqrt(variance) * root.matrixU().solve(eigen.eigenvectors().col(r - 1 - k));
     }
@@ -121,11 +130,12 @@ Model fit_model(std::span<const Told> rows, Index modes) {
                     (model.loading.transpose() * rows[i].m * model.loading * z[i].covariance).trace();
         }
         model.mean = sum.ldlt().solve(free);
-        model.kappa = std::max(1e-6, left / std::max(1.0, static_cast<double>(ranks - r * (1 + modes))));
+        model.kappa =
+            std::max(kLeastKappa, left / std::max(1.0, static_cast<double>(ranks - r * (1 + modes))));
         // Expanded parameters (Liu, Rubin and Wu 1998): z keeps unit variance, in a few steps instead of many.
         if (modes > 0) model.loading = (model.loading * spread.llt().matrixL().toDenseMatrix()).eval();
         const double size = model.loading.squaredNorm() + model.kappa;
-        if (std::abs(size - last) < 1e-7 * size) break;
+        if (std::abs(size - last) < kSizeSettled * size) break;
         last = size;
     }
     return model;
@@ -173,12 +183,12 @@ Expected<void> check_rows_of_shapes(std::span<const ElasticSpot> spots, std::spa
         if (!row.residual_mm.allFinite() || !row.information.allFinite() || !seen_ok)
             return input_error("the row holds a number that is not finite", row.id);
         const double scale = row.information.cwiseAbs().maxCoeff();
-        const bool symmetric =
-            (row.information - row.information.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * scale;
+        const bool symmetric = (row.information - row.information.transpose()).cwiseAbs().maxCoeff() <=
+                               kInformationAsymmetry * scale;
         if (row.rank < 1 || !symmetric ||
             Eigen::SelfAdjointEigenSolver<MatrixXd>(row.information, Eigen::EigenvaluesOnly)
                     .eigenvalues()
-                    .minCoeff() < -1e-7 * scale)
+                    .minCoeff() < -kInformationNegative * scale)
             return input_error("the information of the row is none", row.id);
     }
     return {};
@@ -231,9 +241,9 @@ void put_modes(const Model& model, const MatrixXd& basis, std::span<const Told> 
         mode.variance_mm2 = amplitude_of_z[k] * amplitude_of_z[k] * (1 + 1.0 / parts);
         const double measured = mode.variance_mm2 * (1 + noise);
         mode.variance_low_mm2 = std::max(
-            0.0, measured * degrees / chi_square_quantile(degrees, 0.975) - noise * mode.variance_mm2);
+            0.0, measured * degrees / chi_square_quantile(degrees, kBelowHigh95) - noise * mode.variance_mm2);
         mode.variance_high_mm2 = std::max(
-            0.0, measured * degrees / chi_square_quantile(degrees, 0.025) - noise * mode.variance_mm2);
+            0.0, measured * degrees / chi_square_quantile(degrees, kBelowLow95) - noise * mode.variance_mm2);
         mode.lowest_mm = amplitudes.row(k).minCoeff();
         mode.highest_mm = amplitudes.row(k).maxCoeff();
     }
@@ -282,7 +292,7 @@ Expected<ElasticModes> learn_modes(std::span<const ElasticSpot> spots, std::span
     for (const ElasticRow& row : rows) sum += row.information;
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(sum);
     const double largest = eigen.eigenvalues().maxCoeff();
-    const Index told = (eigen.eigenvalues().array() > 1e-6 * largest).count();
+    const Index told = (eigen.eigenvalues().array() > kToldShare * largest).count();
     const MatrixXd basis = eigen.eigenvectors().rightCols(told);
     std::vector<Told> inner;
     for (const ElasticRow& row : rows) {

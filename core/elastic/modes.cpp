@@ -93,9 +93,10 @@ ShapeInformation shape_information(std::size_t slots, std::span<const int> slot_
     Eigen::MatrixXd inner = moves.transpose() * heavy;
     inner.diagonal().tail(nuisances).array() += 1;
     out.rank = std::max(0, observed - static_cast<int>(motions));
+    constexpr double kSingular = 1e-14;  // reciprocal condition
     const Eigen::LDLT<Eigen::MatrixXd> factorised(inner);
     out.regular =
-        factorised.info() == Eigen::Success && factorised.isPositive() && factorised.rcond() > 1e-14;
+        factorised.info() == Eigen::Success && factorised.isPositive() && factorised.rcond() > kSingular;
     if (!out.regular) return out;
     const Eigen::MatrixXd gain = factorised.solve(heavy.transpose());
     out.information = blocks - heavy * gain;

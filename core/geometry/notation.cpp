@@ -50,8 +50,9 @@ FanucWpr fanuc_from_rotation(const Eigen::Matrix3d& r) {
 }
 
 Expected<Eigen::Matrix3d> rotation_from_abb(const AbbQuaternion& q, const Text& where) {
+    constexpr double kOffUnit = 1e-3;
     const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-    if (!(std::abs(norm - 1.0) <= 1e-3))
+    if (!(std::abs(norm - 1.0) <= kOffUnit))
         return input_error(Text("the quaternion has length {:.4g} instead of 1", norm), where,
                            "give w x y z of a unit quaternion, w first");
     return Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();

@@ -8,12 +8,17 @@
 namespace seamwright {
 namespace {
 
+constexpr double kSeries_rad = 1e-4;  // turns below are taken by their series: the quotients lose digits
+constexpr double kNoTurn = 1e-9;      // sine of half the angle
+constexpr double kOpposite = 1e-12;   // sum of two unit directions that have no middle
+constexpr double kFarthest_mm = 1e5;
+
 // d/ds of the integral of Exp(s w): translation part of a screw motion, V(w) with t = V(w) v.
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& w) {
     const double angle = w.norm();
     const Eigen::Matrix3d k = skew(w);
     double a, b;  // V = I + a K + b K^2
-    if (angle < 1e-4) {
+    if (angle < kSeries_rad) {
         a = 0.5 - angle * angle / 24.0;
         b = 1.0 / 6.0 - angle * angle / 120.0;
     } else {
@@ -34,8 +39,8 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& a) {
 Eigen::Matrix3d rotation_exp(const Eigen::Vector3d& w) {
     const double angle = w.norm();
     const Eigen::Matrix3d k = skew(w);
-    double a, b;  // R = I + a K + b K^2 (Rodrigues); series where the quotients lose digits
-    if (angle < 1e-4) {
+    double a, b;  // R = I + a K + b K^2 (Rodrigues)
+    if (angle < kSeries_rad) {
         a = 1.0 - angle * angle / 6.0;
         b = 0.5 - angle * angle / 24.0;
     } else {
@@ -52,7 +57,7 @@ Eigen::Vector3d rotation_log(const Eigen::Matrix3d& r) {
     q.normalize();
     if (q.w() < 0) q.coeffs() *= -1.0;
     const double s = q.vec().norm();
-    if (s < 1e-9) return 2.0 * q.vec() / q.w();
+    if (s < kNoTurn) return 2.0 * q.vec() / q.w();
     return q.vec() * (2.0 * std::atan2(s, q.w()) / s);
 }
 
@@ -62,7 +67,7 @@ Eigen::Matrix3d rotation_between(const Eigen::Vector3d& from, const Eigen::Vecto
     Eigen::Vector3d middle = a + b;
     if (across.squaredNorm() > 2)  // of a short sum only what is square to the difference keeps its digits
         middle -= across.dot(middle) / across.squaredNorm() * across;
-    middle = middle.norm() > 1e-12 ? middle.normalized() : a.unitOrthogonal();
+    middle = middle.norm() > kOpposite ? middle.normalized() : a.unitOrthogonal();
     const Eigen::Matrix3d first = 2 * a * a.transpose() - Eigen::Matrix3d::Identity();
     const Eigen::Matrix3d second = 2 * middle * middle.transpose() - Eigen::Matrix3d::Identity();
     return second * first;
@@ -138,7 +143,7 @@ Expected<Pose> pose_from_matrix(const Eigen::Matrix4d& m, const Text& where, dou
                            "give a rotation without scale or shear");
     if (r.determinant() < 0)
         return input_error("the rotation is mirrored (determinant -1)", where, "swap the sign of one axis");
-    if (m.col(3).head<3>().cwiseAbs().maxCoeff() > 1e5)
+    if (m.col(3).head<3>().cwiseAbs().maxCoeff() > kFarthest_mm)
         return input_error("the translation is beyond 100 m", where, "translations are in millimetres");
     Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
     return make_pose(svd.matrixU() * svd.matrixV().transpose(), m.col(3).head<3>());

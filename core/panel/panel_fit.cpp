@@ -326,8 +326,9 @@ Expected<PanelFit> fit_panel(std::span<const PanelSpot> spots, const PanelOption
     const JointSpots joint = joint_spots(spots, panel, body, b, fit);
     CorrectionOptions plain = each;
     plain.reject_outliers = false;
-    plain.sigma_limit_mm = 1e6;  // judged below, for the motion as a whole
-    plain.sigma_limit_deg = 1e6;
+    constexpr double kNoLimit = 1e6;  // it is judged below, for the motion as a whole
+    plain.sigma_limit_mm = kNoLimit;
+    plain.sigma_limit_deg = kNoLimit;
     auto solved = solve_region(joint.counted, plain);
     if (!solved) return tl::unexpected(on_side(solved.error(), "panel to body"));
     if (solved->status != CorrectionStatus::ok) {

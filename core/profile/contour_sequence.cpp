@@ -7,9 +7,13 @@ namespace {
 
 constexpr int kRoughSamples = 256, kSamples = 1024;  // of a first look, and along a path
 constexpr double kMedianToSigma = 1 / 0.6744897501960817;
-constexpr double kUpperToSigma = 1 / 1.1503493803760083;  // of the 75 % quantile of |normal|
+constexpr double kUpper = 0.75, kUpperToSigma = 1 / 1.1503493803760083;  // a quantile of |normal|
 constexpr double kSteep = 2;  // slope from which noise of x counts for more than that of z
 constexpr std::size_t kFewestSteep = 6;
+constexpr double kLeastRun = 1e-12;                               // of its rise: of a steep place along x
+constexpr double kLeastSpacing = 1e-9, kLeastSpacing_mm = 1e-12;  // the former of the coordinates
+// In outliers: what a point of unknown direction costs more behind lines that are left out.
+constexpr double kAfterSkip = 0.5;
 constexpr double kNoiseFloor = 0.01;  // of the spacing: below it the direction decides, not the noise
 
 double quantile(std::vector<double>& values, double share) {
@@ -25,7 +29,7 @@ double sigma_of(std::vector<double>& differences, bool clean) {
     if (differences.empty()) return 0;
     double sigma = quantile(differences, 0.5) * kMedianToSigma;
     if (clean || sigma == 0) {
-        const double upper = quantile(differences, 0.75) * kUpperToSigma;
+        const double upper = quantile(differences, kUpper) * kUpperToSigma;
         sigma = sigma > 0 ? 0.5 * (sigma + upper) : upper;
     }
     return sigma / std::sqrt(6.);
@@ -47,7 +51,7 @@ double sigma_along_x(Workspace& w, const std::vector<int>& pick, const Scale& sc
         if (!(dz > kSteep * dx) || c.line - p.line != 2 || q.line - c.line != 2) continue;
         // Up or down all the way: no peak of noise.
         if ((c.z - p.z) * (q.z - c.z) <= 0 || !smooth(k) || !smooth(k + 1) || !smooth(k + 2)) continue;
-        slopes.push_back(dz / std::max(dx, 1e-12 * dz));
+        slopes.push_back(dz / std::max(dx, kLeastRun * dz));
         a.push_back(std::abs(p.z - 2 * c.z + q.z) / slopes.back());
     }
     if (a.size() < kFewestSteep) return 0;
@@ -83,7 +87,7 @@ Scale estimate_scale(Workspace& w, const std::vector<int>& pick, bool along_path
         magnitude = std::max({magnitude, std::abs(at(k).x), std::abs(at(k).z)});
     }
     if (!a.empty()) scale.spacing = quantile(a, 0.5);
-    scale.spacing = std::max({scale.spacing, 1e-9 * magnitude, 1e-12});
+    scale.spacing = std::max({scale.spacing, kLeastSpacing * magnitude, kLeastSpacing_mm});
 
     for (const bool strict : {true, false}) {
         a.clear(), b.clear();
@@ -217,8 +221,9 @@ void cheapest_sequence(Workspace& w, const Model& m) {
                 if (i > m.longest_gap) return;
                 if (node.state.age < 2) {
                     const double ratio = reach_ratio(m, node.state, point.x, point.z, i);
-                    const double cost = node.cost + skipped +
-                                        (0.6 * ratio * ratio + (skipped > 0 ? 0.5 : 0)) * m.outlier_cost;
+                    const double cost =
+                        node.cost + skipped +
+                        (kReachCost * ratio * ratio + (skipped > 0 ? kAfterSkip : 0)) * m.outlier_cost;
                     if (ratio < 1 && cost < best) best = cost, from = j, link = Link::edge;
                     return;
                 }
@@ -258,7 +263,7 @@ void cheapest_sequence(Workspace& w, const Model& m) {
                         if (i > m.edge_window) continue;
                         const double ratio = reach_ratio(m, node.state, point.x, point.z, i);
                         const double cost =
-                            node.cost + skipped + m.edge_cost + 0.6 * m.outlier_cost * ratio * ratio;
+                            node.cost + skipped + m.edge_cost + kReachCost * m.outlier_cost * ratio * ratio;
                         if (ratio < 1 && cost < best) best = cost, from = j, link = Link::edge;
                     }
                 }

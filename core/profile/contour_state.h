@@ -26,6 +26,21 @@ inline constexpr double kCalm = 0.8, kCalmVariance = 2, kCalmExcess = 1.5;  // s
 inline constexpr int kSteady = 6, kHeldPoints = 11;  // see Held; points after which the gains stand still
 inline constexpr int kMature = 3;                    // points after which the direction carries the spacing
 
+// Of the usual spacing's square: what a spacing may shrink and grow to while a contour is followed, and after two points.
+inline constexpr double kLeastSpacing2 = 0.01, kMostSpacing2 = 225;
+inline constexpr double kLeastFirst2 = 0.09, kMostFirst2 = 100;
+// Costs: of an outlier beyond half the band's square; then in outliers: of a sharp edge, of a new segment beyond the
+// lookahead, of a point at the end of its reach.
+inline constexpr double kOutlierMore = 0.75, kEdgeCost = 2.2, kJumpMore = 0.6, kReachCost = 0.6;
+inline constexpr double kPriorSpacings = 1.5;  // sigma of each coordinate of an unknown advance
+inline constexpr double kReachNoise = 1.5;     // of the band, by which noise widens a reach
+// Of the spacing, in a line: its drift, its growth at a point, and what the drift makes of it over a gap.
+inline constexpr double kMostDrift = 0.1, kMostGrowth = 0.5, kMostDriftAhead = 0.3;
+// Up to which one chord step solves map_ratio(): the measured ratio, and how far its start lies off 1.
+inline constexpr double kNearMeasured = 1.7, kNearStart = 0.25;
+// Of the excess, and of d2, which is 2 of mere noise: what a point leaves of the one and adds of the other.
+inline constexpr double kExcessKept = 0.95, kExcessTaken = 0.025;
+
 // What the profile itself says: noise of x and z, typical spacing per line.
 struct Scale {
     double sx = 0, sz = 0, spacing = 0;
@@ -49,11 +64,11 @@ struct Model {
         : scale(s), band(o.band_sigmas), average(o.average), initial_sigma(o.initial_sigma) {
         sx2 = scale.sx * scale.sx, sz2 = scale.sz * scale.sz;
         sxz = sx2 * sz2, inv_sxz = 1 / sxz;
-        least_spacing2 = 0.01 * scale.spacing * scale.spacing;
-        largest_spacing2 = 225 * scale.spacing * scale.spacing;
-        outlier_cost = 0.5 * band * band + 0.75;
-        edge_cost = 2.2 * outlier_cost;
-        jump_cost = (o.lookahead + 0.6) * outlier_cost;
+        least_spacing2 = kLeastSpacing2 * scale.spacing * scale.spacing;
+        largest_spacing2 = kMostSpacing2 * scale.spacing * scale.spacing;
+        outlier_cost = 0.5 * band * band + kOutlierMore;
+        edge_cost = kEdgeCost * outlier_cost;
+        jump_cost = (o.lookahead + kJumpMore) * outlier_cost;
         skip_line = outlier_cost;
         window = 2 * o.lookahead + 2;
         edge_window = o.lookahead + 1;
@@ -122,7 +137,8 @@ inline double squared_distance(const Model& m, const State& s, double ex, double
     d.p22 = s.p22 + q * n;
     // (3.4), (3.5) for the distance of i lines: drift as the mean growth over them.
     d.grown = n;
-    if (i > 1 && s.drift != 0) d.grown = n * (1 + std::clamp(0.5 * s.drift * (n - 1), -0.3, 0.3));
+    if (i > 1 && s.drift != 0)
+        d.grown = n * (1 + std::clamp(0.5 * s.drift * (n - 1), -kMostDriftAhead, kMostDriftAhead));
     d.ex = x - s.x - d.grown * s.vx;
     d.ez = z - s.z - d.grown * s.vz;
     const double relative = s.variance * n;
@@ -144,7 +160,7 @@ inline bool is_calm(const Model& m, const State& s, const Deviation& d) {
 inline double map_ratio(double rm, double K, double mode, const State& s, int i) {
     const double inverse = 1 / (1 + K);
     const double start = (rm * K + 1 + mode) * inverse, e = start - 1;
-    if (rm < 1.7 && std::abs(e) < 0.25) {
+    if (rm < kNearMeasured && std::abs(e) < kNearStart) {
         const double logarithm = e * (1 + e * (-0.5 + e * (1. / 3 + e * (-0.25 + e * 0.2))));
         return start * (1 + ((rm - start) * start * K - (logarithm - mode)) * inverse);
     }
@@ -165,11 +181,11 @@ inline double map_ratio(double rm, double K, double mode, const State& s, int i)
         const double v = s.variance * n;
         const double K = v * d.across * n * n * inv_S * m.inv_sxz;
         const double ratio = map_ratio(measured, K, s.drift * n - 1.5 * v, s, i);
-        const double growth = std::clamp(ratio - 1, -0.5, 0.5) * per_line;
+        const double growth = std::clamp(ratio - 1, -kMostGrowth, kMostGrowth) * per_line;
         const double surprise = growth - s.drift;
         s.variance = std::max((1 - m.average) * s.variance + m.average * surprise * surprise,
                               kMinSpacingSigma * kMinSpacingSigma);
-        s.drift = std::clamp((1 - m.average) * s.drift + m.average * growth, -0.1, 0.1);
+        s.drift = std::clamp((1 - m.average) * s.drift + m.average * growth, -kMostDrift, kMostDrift);
         const double advance = (ratio - expected) * n;
         const double ax = s.vx * advance, az = s.vz * advance;
         s.x += ax, s.z += az;
@@ -181,7 +197,7 @@ inline double map_ratio(double rm, double K, double mode, const State& s, int i)
     s.spacing2 = std::clamp(s.vx * s.vx + s.vz * s.vz, m.least_spacing2, m.largest_spacing2);
     s.p11 = g1, s.p12 = g2, s.p22 = d.p22 - d.p12 * g2;
     ++s.age;
-    s.excess = std::max(1., s.excess * (0.95 + 0.025 * d.d2));
+    s.excess = std::max(1., s.excess * (kExcessKept + kExcessTaken * d.d2));
 }
 
 // What changes slowly from point to point of a contour followed calmly: the factors of deviation() and
@@ -220,11 +236,12 @@ inline void hold(const Model& m, const State& s, const Deviation& d, Held& h) {
         return false;
     }
     --h.points;
-    const double growth = std::clamp(h.share * ((s.vx * wx + s.vz * wz) * h.inv_across) + h.shift, -0.5, 0.5);
+    const double growth =
+        std::clamp(h.share * ((s.vx * wx + s.vz * wz) * h.inv_across) + h.shift, -kMostGrowth, kMostGrowth);
     const double surprise = growth - s.drift;
     s.variance = std::max((1 - m.average) * s.variance + m.average * surprise * surprise,
                           kMinSpacingSigma * kMinSpacingSigma);
-    s.drift = std::clamp((1 - m.average) * s.drift + m.average * growth, -0.1, 0.1);
+    s.drift = std::clamp((1 - m.average) * s.drift + m.average * growth, -kMostDrift, kMostDrift);
     const double ax = s.vx * growth, az = s.vz * growth;
     ex -= ax, ez -= az;
     s.vx += ax, s.vz += az;
@@ -232,7 +249,7 @@ inline void hold(const Model& m, const State& s, const Deviation& d, Held& h) {
     s.vx += h.g2 * ex, s.vz += h.g2 * ez;
     s.spacing2 = std::clamp(s.vx * s.vx + s.vz * s.vz, m.least_spacing2, m.largest_spacing2);
     ++s.age;
-    s.excess = std::max(1., s.excess * (0.95 + 0.025 * d2));
+    s.excess = std::max(1., s.excess * (kExcessKept + kExcessTaken * d2));
     return true;
 }
 
@@ -243,13 +260,13 @@ inline double reach_ratio(const Model& m, const State& s, double x, double z, in
     const double dx = x - s.x, dz = z - s.z;
     double reach = kSpacingReach * std::max(s.spacing(), 0.5 * m.scale.spacing) * i;
     if (i == 1) reach = std::max(reach, kFlankReach * m.scale.spacing);
-    return std::sqrt(dx * dx + dz * dz) / (reach + m.band * 1.5 * m.scale.largest());
+    return std::sqrt(dx * dx + dz * dz) / (reach + m.band * kReachNoise * m.scale.largest());
 }
 
 // The state after such a point: direction from the two points, shrunk to what spacing and noise make
 // probable.
 inline void accept_any_direction(const Model& m, State& s, double x, double z, int i) {
-    const double prior = 1.5 * m.scale.spacing, prior2 = prior * prior * i * i;
+    const double prior = kPriorSpacings * m.scale.spacing, prior2 = prior * prior * i * i;
     const auto weight = [&](double sigma) { return prior2 / (prior2 + 2 * sigma * sigma); };
     const double w = weight(m.scale.largest());
     s.vx = weight(m.scale.sx) * (x - s.x) / i;
@@ -257,7 +274,7 @@ inline void accept_any_direction(const Model& m, State& s, double x, double z, i
     s.x = x, s.z = z;
     s.p11 = 1, s.p12 = w / i, s.p22 = 2 * w / (double(i) * i);
     const double usual2 = m.scale.spacing * m.scale.spacing;
-    s.spacing2 = std::clamp(s.vx * s.vx + s.vz * s.vz, 0.09 * usual2, 100 * usual2);
+    s.spacing2 = std::clamp(s.vx * s.vx + s.vz * s.vz, kLeastFirst2 * usual2, kMostFirst2 * usual2);
     s.drift = 0;
     s.variance = m.initial_sigma * m.initial_sigma;
     s.excess = 1;

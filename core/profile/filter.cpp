@@ -86,7 +86,7 @@ void take_in_rows(Workspace& w, const Model& m, int lookahead, int min_points) {
                 const double ratio = reach_ratio(m, from.state, point.x, point.z, i);
                 // After a single point any direction goes on.
                 const double turn = from.state.age < 2 ? 0 : edge_cost;
-                if (ratio < 1) put(cost + turn + 0.6 * m.outlier_cost * ratio * ratio, j, Link::edge);
+                if (ratio < 1) put(cost + turn + kReachCost * m.outlier_cost * ratio * ratio, j, Link::edge);
             }
             const State& from = w.nodes[std::size_t(node.previous)].state;
             const int i = point.line - w.candidates[std::size_t(node.previous)].line;
@@ -227,6 +227,7 @@ struct LocalFit {
 
 LocalFit local_fit(const Workspace& w, const int* points, int n, int line0) {
     constexpr int size = 3;
+    constexpr double kSingular = 1e-9;
     // Normal equations over t = line - line0, about the prediction at t = 0: 3 x 3 by elimination.
     LocalFit fit;
     double s[5] = {}, bx[3] = {}, bz[3] = {};
@@ -246,7 +247,7 @@ LocalFit local_fit(const Workspace& w, const int* points, int n, int line0) {
         a[r][3] = bx[r], a[r][4] = bz[r], a[r][5] = r == 0 ? 1 : 0;
     }
     for (int r = 0; r < size; ++r) {
-        if (!(a[r][r] > 1e-9 * s[2 * r])) return fit;
+        if (!(a[r][r] > kSingular * s[2 * r])) return fit;
         for (int q = 0; q < size; ++q) {
             if (q == r) continue;
             const double factor = a[q][r] / a[r][r];
@@ -267,6 +268,7 @@ LocalFit local_fit(const Workspace& w, const int* points, int n, int line0) {
 void settle_doubtful(Workspace& w, const Model& m) {
     constexpr int kSide = 4;
     constexpr double kGoodFit = 2.0;
+    constexpr double kFarOff = 2.4;  // outliers
     for (const int c : w.doubtful) {
         const Candidate& p = w.candidates[std::size_t(c)];
         const auto contour_of = [&](int k) {
@@ -304,7 +306,7 @@ void settle_doubtful(Workspace& w, const Model& m) {
             misfit += distance2(m, s, ex, ez, 1, along);
         }
         if (misfit > kGoodFit * (n - 3)) continue;
-        if (distance2(m, s, p.x - fit.x, p.z - fit.z, 1 + fit.factor, along) > 2.4 * m.outlier_cost)
+        if (distance2(m, s, p.x - fit.x, p.z - fit.z, 1 + fit.factor, along) > kFarOff * m.outlier_cost)
             w.piece[std::size_t(c)] = -1;
     }
 }
@@ -414,7 +416,7 @@ bool continuous(const Workspace& w, const Model& m, int ka, int kb) {
     if (far || right.age < kSettled) right = end_line(w, cb, +1, far ? kLongFitPoints : kFitPoints, right);
     const double distance = std::hypot(b.x - a.x, b.z - a.z);
     const double spacing = std::max({left.spacing(), right.spacing(), 0.5 * m.scale.spacing});
-    if (!(distance < kSpacingGap * spacing * n + m.band * 1.5 * m.scale.largest())) return false;
+    if (!(distance < kSpacingGap * spacing * n + m.band * kReachNoise * m.scale.largest())) return false;
     if (left.age < kMature || right.age < kMature) return n <= kShortGap;
 
     const auto tolerance = [&](const State& s, const State& other) {
@@ -435,8 +437,9 @@ bool continuous(const Workspace& w, const Model& m, int ka, int kb) {
     const double cross = left.vx * right.vz - left.vz * right.vx;
     const double alpha = (dx * right.vz - dz * right.vx) / cross,
                  beta = (dx * left.vz - dz * left.vx) / cross;
-    const double slack =
-        0.75 + m.band * m.scale.largest() * std::sqrt(left.spacing() * right.spacing()) / std::abs(cross);
+    constexpr double kSlack_lines = 0.75;  // beside the noise
+    const double slack = kSlack_lines + m.band * m.scale.largest() *
+                                            std::sqrt(left.spacing() * right.spacing()) / std::abs(cross);
     return alpha > -slack && alpha < n + slack && beta > -slack && beta < n + slack;
 }
 

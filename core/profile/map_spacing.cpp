@@ -25,6 +25,12 @@ struct Density {
 constexpr int kFastSteps = 8, kSafeSteps = 80;
 constexpr double kStepTolerance = 2e-8;  // Newton is quadratic there: the error left is about its square
 
+constexpr double kMostPull = 700;  // in u: exp(-700) is still a number
+constexpr double kBelow = 1e-9;    // that the lower end of a bracket lies below what bounds the root
+// Step from which exp to third order is exact enough, for the next error is below 1e-6 by its square; and what of that
+// next one counts as none.
+constexpr double kSmallStep = 1e-4, kNextStep = 1e-9;
+
 // Root of the falling function h' in [lo, hi]: Newton, halving whenever it leaves the bracket or stops
 // shrinking.
 double safe_root(const Density& d, double lo, double hi, double u) {
@@ -48,7 +54,7 @@ double safe_maximum(const Density& d, double start) {
         // Below the prediction's mode; the lower end takes the pull of the measurement at its largest.
         const double r = std::exp(d.up);
         const double pull = (r - d.rm) * r * d.inv_rho2 / d.inv_v;
-        return safe_root(d, d.up - std::min(pull, 700.0) - 1e-9, d.up, start);
+        return safe_root(d, d.up - std::min(pull, kMostPull) - kBelow, d.up, start);
     }
     const double um = std::log(d.rm);
     if (um <= d.up) return safe_root(d, um, d.up, start);
@@ -110,11 +116,10 @@ double map_spacing(double s_meas, double s_0, double mu, double sigma, double sn
             const double step = -d.slope(u, r) / curvature;
             if (!(curvature < 0) || !(std::abs(step) < 1)) break;
             u += step;
-            if (std::abs(step) <
-                1e-4) {  // the next error is below 1e-6 by its square; exp to third order is exact enough
+            if (std::abs(step) < kSmallStep) {
                 r *= 1 + step * (1 + step * (0.5 + step / 6));
                 if (std::abs(step) < kStepTolerance ||
-                    std::abs(step * step * (1 + inv_rho2 * r * r / -curvature)) < 1e-9)
+                    std::abs(step * step * (1 + inv_rho2 * r * r / -curvature)) < kNextStep)
                     return s_0 * r;
             } else {
                 r = std::exp(u);

@@ -15,6 +15,8 @@ constexpr double kFarSpreads = 5, kFar_mm = 50, kAlone_mm = 0.2;
 constexpr double kByChance = 1e-4, kAround = 0.2;
 constexpr double kDrawn_mm = 1e-5;  // second differences of a contour that carries no noise
 constexpr double kNoisyShare = 0.25;
+constexpr double kWrittenExactly = 1e-9;  // of the value
+constexpr double kSpreadShare = 0.95;     // of the points that lie within the spread
 
 // 0, 9.., 32767, 32768, 65535 and the limits of 32 bits, with the decimal point anywhere.
 bool written_like_a_code(double value) {
@@ -22,7 +24,7 @@ bool written_like_a_code(double value) {
     if (v == 0) return true;
     for (int shift = 0; shift <= 6; ++shift, v *= 10) {
         const double whole = std::round(v);
-        if (std::abs(v - whole) > 1e-9 * v) continue;
+        if (std::abs(v - whole) > kWrittenExactly * v) continue;
         for (const double code : {32767., 32768., 65535., 2147483647., 2147483648.})
             if (whole == code) return true;
         double nines = 99;
@@ -100,7 +102,7 @@ Others others(const Profile& profile, const std::vector<std::size_t>& seen, doub
     };
     o.middle = quantile(0.5);
     for (double& h : z) h = std::abs(h - o.middle);
-    o.spread = quantile(0.95);
+    o.spread = quantile(kSpreadShare);
     return o;
 }
 

@@ -12,6 +12,11 @@ constexpr int kFixedPointSteps = 3;
 constexpr int kNewtonSteps = 20;
 constexpr double kConverged = 1e-13;  // normalised; 1e-10 px at a focal length of 1000 px
 
+constexpr double kTowardsAxis = 0.7;  // of the radius: a start beyond the fold comes nearer
+constexpr double kLeastStep = 1e-6;   // of Newton's step
+constexpr double kFound = 1e-12;      // of 1 and the pixel's normalised coordinates
+constexpr double kAlongPlane = 1e-9;  // sine: a ray that does not meet the laser plane
+
 const Eigen::Vector2d kNowhere(kNaN, kNaN);
 
 // d(r_distorted)/dr of the radial part as a polynomial of s = r^2.
@@ -77,8 +82,8 @@ Eigen::Vector2d CameraModel::undistort(const Eigen::Vector2d& pixel) const {
         y = ny;
     }
     while (!before_fold(*this, x * x + y * y)) {
-        x *= 0.7;
-        y *= 0.7;
+        x *= kTowardsAxis;
+        y *= kTowardsAxis;
     }
     Distorted d = distort(*this, x, y);
     double miss = std::hypot(d.x - u, d.y - v);
@@ -88,7 +93,7 @@ Eigen::Vector2d CameraModel::undistort(const Eigen::Vector2d& pixel) const {
         const double sx = (d.yy * (u - d.x) - d.xy * (v - d.y)) / det,
                      sy = (d.xx * (v - d.y) - d.xy * (u - d.x)) / det;
         bool better = false;
-        for (double share = 1; share > 1e-6; share *= 0.5) {
+        for (double share = 1; share > kLeastStep; share *= 0.5) {
             const double nx = x + share * sx, ny = y + share * sy;
             if (!before_fold(*this, nx * nx + ny * ny)) continue;
             const Distorted tried = distort(*this, nx, ny);
@@ -104,7 +109,7 @@ Eigen::Vector2d CameraModel::undistort(const Eigen::Vector2d& pixel) const {
         if (!better) break;
     }
     const double scale = 1 + std::abs(u) + std::abs(v);
-    return miss <= 1e-12 * scale ? Eigen::Vector2d(x, y) : kNowhere;
+    return miss <= kFound * scale ? Eigen::Vector2d(x, y) : kNowhere;
 }
 
 std::optional<Eigen::Vector2d> LookupTable::at(const Eigen::Vector2d& pixel) const {
@@ -136,7 +141,7 @@ std::optional<Eigen::Vector2d> SensorModel::to_laser(const Eigen::Vector2d& pixe
     const Eigen::Vector3d origin = camera_from_laser.translation();
     const Eigen::Vector3d normal = rotation.col(1);
     const double along = normal.dot(direction);
-    if (!(std::abs(along) > 1e-9 * direction.norm())) return std::nullopt;
+    if (!(std::abs(along) > kAlongPlane * direction.norm())) return std::nullopt;
     const double depth = normal.dot(origin) / along;
     if (!(depth > 0)) return std::nullopt;
     const Eigen::Vector3d from_origin = depth * direction - origin;

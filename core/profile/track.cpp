@@ -6,6 +6,7 @@ namespace {
 using namespace contour;
 
 constexpr double kAbsurd = 1e100;
+constexpr double kBeyondReach = 1e300;  // squared distance of a candidate that no track takes
 
 // Costs in the filter's unit (half a squared sigma; "outliers" are m.outlier_cost of it), set so that the
 // right explanation of a frame with reflections is the cheapest. What tells a reflection from the stripe:
@@ -31,6 +32,7 @@ constexpr double kForeignSpread = 3;  // or, far from lines that tell, this many
 constexpr double kBrightLines = 64;   // over which brightness is averaged
 constexpr double kDimmest = 1e-3, kBrightest = 1e9;  // grey values, whatever a caller hands in
 constexpr double kBrightPrior = 8;                   // weight of the whole frame's, in lines
+constexpr double kOneOfMany = 1e-3;  // weight of a line's strongest: it speaks where no line has but one
 
 // A stretch of candidates that continue each other smoothly, whatever they are: stripe or reflection.
 struct Track {
@@ -82,7 +84,7 @@ void follow_tracks(const Workspace& w, const Model& m, Tracks& t) {
                 double d2;
                 if (track.state.age < 2) {
                     const double ratio = reach_ratio(m, track.state, p.x, p.z, i);
-                    d2 = ratio < 1 ? m.outlier_cost * (1 + ratio) : 1e300;
+                    d2 = ratio < 1 ? m.outlier_cost * (1 + ratio) : kBeyondReach;
                 } else {
                     d2 = deviation(m, track.state, p.x, p.z, i).d2;
                 }
@@ -242,7 +244,7 @@ void price_brightness(Workspace& w) {
     double mean = 0, square = 0, lone = 0;
     for (std::size_t k = 0; k < lines; ++k) {
         const double level = w.candidates[std::size_t(w.path[k])].cost;
-        const double share = only(k) ? 1 : 1e-3;  // the strongest of a line speaks where no line has but one
+        const double share = only(k) ? 1 : kOneOfMany;
         mean += share * level, square += share * level * level, lone += share;
     }
     mean /= lone;

@@ -18,6 +18,9 @@ constexpr double kWideInMetres = 3,
                  kCloseInMetres = 4e-3;  // mm: up to 3 m at 4 mm a point, if it were metres
 constexpr double kWideInInches = 6, kCloseInInches = 0.02;  // mm: up to 6 in (or m) at 0.02 of it a point
 constexpr double kNarrowInMicrometres = 50, kFarInMicrometres = 5, kNoisyInMicrometres = 2;  // mm
+constexpr double kMmPerInch = 25.4;
+constexpr double kRoundTo = 1e-3, kRoundShare = 1e-2;  // the former of the latter's share of three digits
+constexpr double kEven = 1e-4;                         // of the pitch: steps of one grid
 constexpr std::size_t kLeastPoints = 10;
 constexpr const char* kMend = "give x and z in millimetres";
 
@@ -38,7 +41,7 @@ namespace {
 // At most three digits that count.
 bool is_round(double value) {
     const double scaled = value / std::pow(10, std::floor(std::log10(value)) - 2);
-    return std::abs(scaled - std::round(scaled)) < 1e-3 * std::max(1e-2, 1e-2 * scaled);
+    return std::abs(scaled - std::round(scaled)) < kRoundTo * std::max(kRoundShare, kRoundShare * scaled);
 }
 
 // A grid in x that was round in millimetres before somebody divided by 25.4.
@@ -47,9 +50,9 @@ bool inch_grid(const std::vector<double>& x_steps) {
     const double pitch = std::abs(median(sorted));
     if (!(pitch > 0)) return false;
     const auto even = std::count_if(x_steps.begin(), x_steps.end(),
-                                    [&](double s) { return std::abs(std::abs(s) - pitch) < 1e-4 * pitch; });
+                                    [&](double s) { return std::abs(std::abs(s) - pitch) < kEven * pitch; });
     return 10 * static_cast<std::size_t>(even) > 9 * x_steps.size() && !is_round(pitch) &&
-           is_round(pitch * 25.4);
+           is_round(pitch * kMmPerInch);
 }
 
 void suspect(ProfileScale& s, const std::vector<double>& x_steps) {
@@ -72,7 +75,7 @@ void suspect(ProfileScale& s, const std::vector<double>& x_steps) {
         say("micrometres", Text("the points scatter by {:.2g} mm", s.noise));
     else if (inch_grid(x_steps))
         say("inches", Text("the pitch is {:.6g}, which is {:.3g} mm if it is inches", s.pitch,
-                           std::abs(x_steps.front()) * 25.4));
+                           std::abs(x_steps.front()) * kMmPerInch));
 }
 
 }  // namespace

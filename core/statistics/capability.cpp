@@ -7,10 +7,16 @@
 #include <vector>
 
 #include "core/acceptance/distributions.h"
+#include "core/acceptance/levels.h"
 #include "core/numbers.h"
 
 namespace seamwright {
 namespace {
+
+// Shares of a normal variable below 3 standard deviations to either side of its mean.
+constexpr double kBelowLow3Sigma = 0.00135, kBelowHigh3Sigma = 0.99865;
+constexpr double kLeastChance = 1e-300;  // whose logarithm is taken
+constexpr double kSumsRounding = 1e-15;  // of the sum of squares about 0
 
 struct Effective {
     double n = 0, degrees = 0;
@@ -43,8 +49,8 @@ double quantile(const std::vector<double>& sorted, double p) {
 std::optional<Capability> quantile_capability(const ProcessLimits& limits,
                                               const std::vector<double>& sorted) {
     if (sorted.size() < kQuantileValues || !limits.any()) return std::nullopt;
-    const double low = quantile(sorted, 0.00135), middle = quantile(sorted, 0.5),
-                 high = quantile(sorted, 0.99865);
+    const double low = quantile(sorted, kBelowLow3Sigma), middle = quantile(sorted, 0.5),
+                 high = quantile(sorted, kBelowHigh3Sigma);
     if (!(low < middle && middle < high)) return std::nullopt;
     Capability c;
     if (limits.lower && limits.upper) c.spread = Index{(*limits.upper - *limits.lower) / (high - low), {}};
@@ -72,13 +78,11 @@ void say_capability(ProcessSummary& r, const ProcessLimits& limits) {
     Effective total{n * (1 - c) / (1 + c), (n - 1) * alike}, within = total;
     constexpr double kMovingRanges = 2 * std::numbers::pi / 3 + std::numbers::sqrt3 - 3;
     within.degrees = (n - 1) / (2 * kMovingRanges) * alike;
-    const double by = t_quantile(std::max(1.0, total.n - 1), 0.975) * r.s / std::sqrt(total.n);
+    const double by = t_quantile(std::max(1.0, total.n - 1), kBelowHigh95) * r.s / std::sqrt(total.n);
     r.mean_limits = {r.mean - by, r.mean + by};
     r.total = capability(limits, r.mean, r.s, total);
     r.within = capability(limits, r.mean, r.sigma_within, within);
 }
-
-constexpr double kMeanRange = 1.128;  // d2 of two values, in sigma
 
 }  // namespace
 
@@ -106,7 +110,7 @@ std::optional<double> anderson_darling_p(std::span<const double> values) {
         const double lower = normal_cdf((sorted[i] - m.mean) / m.s);
         const double upper = normal_cdf(-(sorted[sorted.size() - 1 - i] - m.mean) / m.s);
         sum += (2 * static_cast<double>(i) + 1) *
-               (std::log(std::max(lower, 1e-300)) + std::log(std::max(upper, 1e-300)));
+               (std::log(std::max(lower, kLeastChance)) + std::log(std::max(upper, kLeastChance)));
     }
     const double a = (-n - sum / n) * (1 + 0.75 / n + 2.25 / (n * n));
     if (a >= 10) return 0.0;  // the fit turns round beyond 13
@@ -165,7 +169,7 @@ Expected<ProcessSummary> summarise_sums(const RowSums& sums, const ProcessLimits
     const Eigen::Vector3d off_mean(-r.mean, 1, 0);
     const double squares = std::max(0.0, sums.squares(off_mean));
     // No scatter but the sums' own rounding.
-    const bool equal = sums.lowest == sums.highest || squares <= 1e-15 * sums.own(1, 1);
+    const bool equal = sums.lowest == sums.highest || squares <= kSumsRounding * sums.own(1, 1);
     if (!equal) {
         r.s = std::sqrt(squares / (r.n - 1));
         if (sums.neighbours() > 0)

@@ -47,13 +47,16 @@ namespace {
 constexpr std::array<std::size_t, 11> kLengths{2, 3, 4, 6, 8, 12, 16, 20, 24, 32, 40};
 constexpr std::array<std::size_t, 7> kRises{1, 8, 12, 16, 24, 32, 48};
 constexpr double kLeastSigmaMm = 1e-3;
+constexpr double kMostChance = 0.1;    // of a false alarm that may be asked for
+constexpr double kStillThere = 0.5;    // of a step's amplitude: it stands
+constexpr double kWarmUpTold = 0.999;  // quantile from which a curve of warming up is told
 
 using Rows = std::span<const std::vector<double>>;
 
 Expected<void> check_points(Rows points, std::span<const DriftChannel> channels, const DriftChartOptions& o) {
     if (points.empty() || channels.empty()) return input_error("there is no point to judge", "drift chart");
     for (const double chance : {o.step_chance, o.drift_chance})
-        if (!(chance > 0 && chance <= 0.1))
+        if (!(chance > 0 && chance <= kMostChance))
             return input_error("a chance of false alarms is not within 0 to 0.1", "drift chart");
     if (!(o.limit_mm > 0) || !(o.degrees >= 1) || !std::isfinite(o.limit_mm) || !std::isfinite(o.degrees))
         return input_error("limit or degrees of freedom are not above 0", "drift chart");
@@ -144,7 +147,7 @@ bool stands(Rows window, const Fit& step) {
     };
     const double moved =
         mean(window.last(std::min(step.n, kStepStands))) - mean(window.first(window.size() - step.n));
-    return moved / step.amplitude_mm > 0.5;
+    return moved / step.amplitude_mm > kStillThere;
 }
 
 // Whether something changed within the window, and then what.
@@ -287,13 +290,14 @@ Expected<LearntDriftChart> learn_drift(std::span<const DriftLearning> points) {
     double warm_cost = cost;
     // Up to twice what was seen: a curve whose end was not seen is refused, not cut off.
     constexpr int kSteps = 60;
+    constexpr double kBegins = 50, kRange = 100;  // a fiftieth of what was seen; times the first
     for (int k = 0; longest_s > 0 && k <= kSteps; ++k) {
-        auto [one, one_cost] = chart_with(points, longest_s * std::pow(100.0, 1.0 * k / kSteps) / 50);
+        auto [one, one_cost] = chart_with(points, longest_s * std::pow(kRange, 1.0 * k / kSteps) / kBegins);
         if (one_cost >= warm_cost) continue;
         warm = std::move(one);
         warm_cost = one_cost;
     }
-    const double asked = chi_square_quantile(static_cast<double>(chart.mean_mm.size()) + 1, 0.999);
+    const double asked = chi_square_quantile(static_cast<double>(chart.mean_mm.size()) + 1, kWarmUpTold);
     if (cost - warm_cost > asked) {
         if (3 * warm.time_constant_s > longest_s)
             return input_error("the reference still wanders at the end of what was measured", "drift watch",

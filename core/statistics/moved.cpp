@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/acceptance/distributions.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
@@ -18,6 +19,11 @@ constexpr double kStepDrop = 6;
 // A car is left out when it lies so far off both neighbours, chi^2 with 6 degrees: one of a million.
 constexpr double kOddCar = 38.3;
 constexpr double kFarDifference = 22.5;  // one of a thousand
+constexpr double kLeastSigma_mm = 1e-6, kLeastSigma_rad = 1e-9;
+constexpr double kStatedShare = 1e-6;  // of what is stated: a thousandth, squared
+constexpr double kMostAlike = 0.9;     // correlation of one car with the next
+constexpr double kRoundedOff = 1e-9;   // of a pattern's length
+constexpr double kOneSided95 = 1.645;  // normal quantile
 
 Matrix6 inverse_of(const Matrix6& m) {
     return m.ldlt().solve(Matrix6::Identity());
@@ -132,7 +138,7 @@ class Diagnosing {
             for (std::size_t i = 0; i < steps.size(); ++i) values[i] = std::abs(steps[i](axis));
             const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
             std::nth_element(values.begin(), middle, values.end());
-            const double sigma = std::max(1.4826 * *middle, axis < 3 ? 1e-6 : 1e-9);
+            const double sigma = std::max(kMadToSigma * *middle, axis < 3 ? kLeastSigma_mm : kLeastSigma_rad);
             start(axis, axis) = 4 * sigma * sigma;  // wide: correlated directions are not cut off
         }
         return start;
@@ -140,9 +146,9 @@ class Diagnosing {
 
     // A scatter that is none in some direction (rounded poses, copies) is held at a thousandth of what is stated.
     static Matrix6 floored(Matrix6 scatter, const Matrix6& stated) {
-        scatter += 1e-6 * stated;
-        scatter.diagonal().head<3>().array() += 1e-12;
-        scatter.diagonal().tail<3>().array() += 1e-18;
+        scatter += kStatedShare * stated;
+        scatter.diagonal().head<3>().array() += kLeastSigma_mm * kLeastSigma_mm;
+        scatter.diagonal().tail<3>().array() += kLeastSigma_rad * kLeastSigma_rad;
         return scatter;
     }
 
@@ -158,7 +164,7 @@ class Diagnosing {
                 square += 0.5 * (steps[i].dot(weight * steps[i]) + steps[i + 1].dot(weight * steps[i + 1]));
             }
         }
-        out_.correlation = square > 0 ? std::clamp(1 + 2 * product / square, 0.0, 0.9) : 0;
+        out_.correlation = square > 0 ? std::clamp(1 + 2 * product / square, 0.0, kMostAlike) : 0;
         // Of no correlation it scatters about 0 by this; what is within is none.
         if (out_.correlation < 2 * 2 / std::sqrt(6 * static_cast<double>(steps.size()))) out_.correlation = 0;
         inflation_ = (1 + out_.correlation) / (1 - out_.correlation);
@@ -489,12 +495,12 @@ double cars_to_tell_apart(const Pattern& one, const Pattern& other, const Matrix
     for (Eigen::Index i = 0; i < a.cols(); ++i) {
         const Eigen::VectorXd left = a.col(i) - b * qr.solve(a.col(i));
         // What rounding leaves is nothing.
-        least = std::min(least, left.norm() < 1e-9 * a.col(i).norm() ? 0 : left.norm());
+        least = std::min(least, left.norm() < kRoundedOff * a.col(i).norm() ? 0 : left.norm());
     }
     // n cars on either side know a change by 2 W / n; the nearer of two faults is taken wrongly when noise beyond
-    // half their distance lies along it, 1.645 sigma at 5 %.
+    // half their distance lies along it, kOneSided95 sigma at 5 %.
     const double distance = least * amount_mm / std::sqrt(2.0);
-    return distance > 0 ? std::ceil(std::pow(2 * 1.645 / distance, 2))
+    return distance > 0 ? std::ceil(std::pow(2 * kOneSided95 / distance, 2))
                         : std::numeric_limits<double>::infinity();
 }
 

@@ -5,9 +5,12 @@
 #include <vector>
 
 #include "core/acceptance/distributions.h"
+#include "core/acceptance/levels.h"
 
 namespace seamwright {
 namespace {
+
+constexpr double kMostCorrelated = 0.99;
 
 std::optional<Crossing> crossing_of(const Trend& t, const ProcessLimits& limits) {
     const bool up = t.slope_per_day > 0;
@@ -28,12 +31,13 @@ std::optional<Crossing> crossing_of(const Trend& t, const ProcessLimits& limits)
 // From n, span, slope, level, residuals' scatter and correlation; `xx` the times' sum of squares about their mean.
 void judge(Trend& t, double xx, const ProcessLimits& limits) {
     const double n = t.n;
-    const double r = std::clamp(t.correlation, 0.0, 0.99);
-    const double by = t_quantile(n - 2, 0.975) * t.residual_s / std::sqrt(xx) * std::sqrt((1 + r) / (1 - r));
+    const double r = std::clamp(t.correlation, 0.0, kMostCorrelated);
+    const double by =
+        t_quantile(n - 2, kBelowHigh95) * t.residual_s / std::sqrt(xx) * std::sqrt((1 + r) / (1 - r));
     t.slope_limits = {t.slope_per_day - by, t.slope_per_day + by};
     // A scatter that is rounding alone is no slope.
-    t.significant = !t.slope_limits.contains(0) &&
-                    std::abs(t.slope_per_day) * t.span_days > 1e-12 * std::max(1.0, std::abs(t.level));
+    t.significant = !t.slope_limits.contains(0) && std::abs(t.slope_per_day) * t.span_days >
+                                                       kRoundedScatter * std::max(1.0, std::abs(t.level));
     if (t.significant) t.crossing = crossing_of(t, limits);
 }
 

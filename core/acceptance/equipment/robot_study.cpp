@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/acceptance/distributions.h"
+#include "core/acceptance/levels.h"
 #include "core/geometry/decompositions.h"
 #include "core/geometry/pose.h"
 
@@ -144,11 +145,12 @@ class Together {
 // none.
 Eigen::MatrixXd gradient_of_rp2(const Eigen::MatrixXd& covariance) {
     const Eigen::Index k = covariance.rows();
+    constexpr double kOffSingular = 0.01;  // of the trace
     const double trace = covariance.trace();
-    const Eigen::MatrixXd c = trace > 0
-                                  ? Eigen::MatrixXd(covariance / trace + 0.01 / static_cast<double>(k) *
-                                                                             Eigen::MatrixXd::Identity(k, k))
-                                  : Eigen::MatrixXd::Identity(k, k);
+    const Eigen::MatrixXd c =
+        trace > 0 ? Eigen::MatrixXd(covariance / trace +
+                                    kOffSingular / static_cast<double>(k) * Eigen::MatrixXd::Identity(k, k))
+                  : Eigen::MatrixXd::Identity(k, k);
     constexpr double kStep = 1e-4;
     Eigen::MatrixXd g(k, k);
     for (Eigen::Index i = 0; i < k; ++i)
@@ -227,7 +229,7 @@ Expected<Scatter> scatter_of(const SpotReturns& spot) {
     s.noise /= s.noise_degrees;
     const double size = means.cwiseAbs().maxCoeff();
     means.colwise() -= means.rowwise().mean().eval();
-    if (means.cwiseAbs().maxCoeff() <= 1e-12 * std::max(1.0, size))
+    if (means.cwiseAbs().maxCoeff() <= kRoundedScatter * std::max(1.0, size))
         return input_error("all returns are equal, so they tell nothing of the scatter", where,
                            "look at the same place with a finer sensor");
     s.degrees = static_cast<double>(n - 1);

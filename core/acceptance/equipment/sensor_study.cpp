@@ -9,10 +9,16 @@
 namespace seamwright {
 namespace {
 
+constexpr double kFarthest_mm = 1e6;
+constexpr double kInPlane = 1e-9;  // of the largest eigenvalue: the points lie in a plane
+constexpr double kLeastDistance = 1e-12, kSettled = 1e-14;  // of the points' extent; of it and the radius
+// Of variances: across a line, of that along it; out of a plane, of that across the line.
+constexpr double kOnLine = 1e-4, kNoPlane = 0.25;
+
 using Points = std::vector<Eigen::Vector3d>;
 
 bool is_size(double value) {
-    return std::isfinite(value) && value >= 0 && value < 1e6;
+    return std::isfinite(value) && value >= 0 && value < kFarthest_mm;
 }
 
 Expected<void> check_points(const Points& points, const Text& where) {
@@ -79,7 +85,7 @@ Expected<ProbedSphere> probe(const SphereProbing& sphere, const SensorLimits& li
     }
     const auto count = static_cast<double>(sphere.points_mm.size());
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> first(normal);
-    if (!(first.eigenvalues()[0] > 1e-9 * first.eigenvalues()[3])) return degenerate();
+    if (!(first.eigenvalues()[0] > kInPlane * first.eigenvalues()[3])) return degenerate();
     const Eigen::Vector4d start = normal.ldlt().solve(right);
     Eigen::Vector3d centre = start.head<3>() / 2;
     double radius = std::sqrt(std::max(0.0, start[3] + centre.squaredNorm()));
@@ -94,7 +100,7 @@ Expected<ProbedSphere> probe(const SphereProbing& sphere, const SensorLimits& li
             const double distance = from.norm();
             deviations[i] = distance - radius;
             Eigen::Vector4d row;
-            row << -from / std::max(distance, 1e-12), -1;
+            row << -from / std::max(distance, kLeastDistance), -1;
             normal += row * row.transpose();
             right -= row * deviations[i];
         }
@@ -105,7 +111,7 @@ Expected<ProbedSphere> probe(const SphereProbing& sphere, const SensorLimits& li
         centre += by.head<3>();
         radius += by[3];
         if (!by.allFinite() || !(radius > 0)) return degenerate();
-        if (by.norm() < 1e-14 * (1 + radius)) break;
+        if (by.norm() < kSettled * (1 + radius)) break;
     }
     for (double& d : deviations) d *= scale;
     r.id = sphere.id;
@@ -128,8 +134,8 @@ Expected<ProbedPlane> probe(const PlaneProbing& plane, const SensorLimits& limit
     for (const Eigen::Vector3d& p : plane.points_mm) scatter += (p - mean) * (p - mean).transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);
     // A line and its scatter are no plane.
-    if (!(axes.eigenvalues()[1] > 1e-4 * axes.eigenvalues()[2]) ||
-        !(axes.eigenvalues()[0] < 0.25 * axes.eigenvalues()[1]))
+    if (!(axes.eigenvalues()[1] > kOnLine * axes.eigenvalues()[2]) ||
+        !(axes.eigenvalues()[0] < kNoPlane * axes.eigenvalues()[1]))
         return input_error("the points are on no plane, or on a line of it alone", where,
                            "take cuts that are spread over the plane");
     std::vector<double> deviations;

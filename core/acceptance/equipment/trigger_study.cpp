@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/acceptance/distributions.h"
+#include "core/acceptance/levels.h"
 #include "core/correction/contour_fit.h"
 #include "core/geometry/pose.h"
 
@@ -17,6 +18,8 @@ constexpr double kSlopeKnown = 0.1;
 constexpr int kPivots = 64;
 // Standing scatter below this is rounding.
 constexpr double kLeastVariance_mm2 = 1e-14;
+// Of the bracket of a root: its first upper end at least, and its last width as a share of the root.
+constexpr double kLeastHigh_s2 = 1e-12, kRootShare = 1e-9;
 
 // The weighted line s0 + b h + tau v at given variances.
 struct WeightedLine {
@@ -84,13 +87,13 @@ class TriggerModel {
         if (f(0.0) <= 0) return 0;
         double low = 0, high = 0;
         for (const TriggerPass& p : moving) high = std::max(high, std::pow(p.travel_mm / p.velocity_mm_s, 2));
-        high = std::max(high, 1e-12);
+        high = std::max(high, kLeastHigh_s2);
         for (int doubled = 0; f(high) > 0; ++doubled) {
             if (doubled > 200) return std::numeric_limits<double>::infinity();
             low = high;
             high *= 2;
         }
-        for (int step = 0; step < 60 && high - low > 1e-9 * high; ++step) {
+        for (int step = 0; step < 60 && high - low > kRootShare * high; ++step) {
             const double middle = (low + high) / 2;
             (f(middle) > 0 ? low : high) = middle;
         }
@@ -208,12 +211,12 @@ Expected<TriggerStudy> trigger_study(std::span<const TriggerPass> passes, double
     };
     const double wider = 2 * slope_share;
     study.jitter_ms = 1e3 * std::sqrt(variance);
-    study.jitter_limits_ms = {1e3 * std::sqrt(limit(0.025)) * std::max(0.0, 1 - wider),
-                              1e3 * std::sqrt(limit(0.975)) * (1 + wider)};
+    study.jitter_limits_ms = {1e3 * std::sqrt(limit(kBelowLow95)) * std::max(0.0, 1 - wider),
+                              1e3 * std::sqrt(limit(kBelowHigh95)) * (1 + wider)};
 
     const WeightedLine line = model.line(variance, a);
     const auto about = [&](double value, double sigma, double of_degrees) {
-        const double by = t_quantile(of_degrees, 0.975) * sigma + wider * std::abs(value);
+        const double by = t_quantile(of_degrees, kBelowHigh95) * sigma + wider * std::abs(value);
         return Interval{value - by, value + by};
     };
     study.reversal_mm = line.value[1];

@@ -9,6 +9,16 @@
 namespace seamwright {
 namespace {
 
+// Of the line through a sheet's points: scatters from which one weighs nothing (Tukey); variance of b that still tells a
+// slope; least scatter, and the least of it in a point's noise.
+constexpr double kLineGate = 4.7, kLeastVariance_mm2 = 1e-9;
+constexpr double kLeastScatter_mm = 0.01, kLeastOfNoise = 0.5;
+constexpr double kMiddle = 0.3;  // of the sheet, from its inner side: where the way outwards begins
+constexpr double kGoesOn = 0.9;  // of beyond_mm: a sheet that is seen farther goes on
+constexpr double kInner = 0.1;   // of window_mm: a point so far inside of the drawing's edge makes the line
+constexpr double kMostVariation = 1.5, kUsualVariation = 0.5;  // v; the latter where no stretches tell it
+constexpr double kTowards = 0.05;  // cos of 87 degrees: a sheet that leans away more is not seen from there
+
 struct Beside {
     double b, n;
 };
@@ -28,7 +38,7 @@ Line line_of(const std::vector<Beside>& points, double floor_mm) {
         values.clear();
         for (const Beside& p : points) values.push_back(std::abs(line.off(p)));
         line.scatter = std::max(floor_mm, kMadToSigma * median(values));
-        const double gate = 4.7 * line.scatter;
+        const double gate = kLineGate * line.scatter;
         double w0 = 0, wb = 0, wn = 0, wbb = 0, wbn = 0;
         for (const Beside& p : points) {
             const double share = line.off(p) / gate;
@@ -37,7 +47,7 @@ Line line_of(const std::vector<Beside>& points, double floor_mm) {
             w0 += w, wb += w * p.b, wn += w * p.n, wbb += w * p.b * p.b, wbn += w * p.b * p.n;
         }
         const double d = w0 * wbb - wb * wb;
-        if (!(w0 > 3) || !(d > 1e-9 * w0 * w0)) break;
+        if (!(w0 > 3) || !(d > kLeastVariance_mm2 * w0 * w0)) break;
         line.slope = (w0 * wbn - wb * wn) / d;
         line.at = (wn - line.slope * wb) / w0;
     }
@@ -54,7 +64,7 @@ std::vector<double> last_points(std::vector<double> b, const CellOptions& o) {
     // From the middle of the sheet outwards to the first tear.
     const double mean = (b.back() - b.front()) / static_cast<double>(b.size() - 1);
     const double tear = std::max(12 * mean, 4 * o.noise_mm);
-    auto from = std::lower_bound(b.begin(), b.end(), b.front() + 0.3 * (b.back() - b.front()));
+    auto from = std::lower_bound(b.begin(), b.end(), b.front() + kMiddle * (b.back() - b.front()));
     auto end = b.end();
     for (auto i = from; i + 1 != b.end(); ++i)
         if (*(i + 1) - *i > tear) {
@@ -62,7 +72,7 @@ std::vector<double> last_points(std::vector<double> b, const CellOptions& o) {
             break;
         }
     b.erase(end, b.end());
-    if (b.size() < 8 || b.back() > 0.9 * o.beyond_mm) return {};
+    if (b.size() < 8 || b.back() > kGoesOn * o.beyond_mm) return {};
     std::reverse(b.begin(), b.end());
     return b;
 }
@@ -70,9 +80,9 @@ std::vector<double> last_points(std::vector<double> b, const CellOptions& o) {
 bool find_end(const std::vector<Beside>& points, const CellOptions& o, CellEnd& out) {
     std::vector<Beside> inner;
     for (const Beside& p : points)
-        if (p.b < -0.1 * o.window_mm) inner.push_back(p);
+        if (p.b < -kInner * o.window_mm) inner.push_back(p);
     if (inner.size() < 8) inner = points;
-    const double floor_mm = std::max(0.01, 0.5 * o.noise_mm);
+    const double floor_mm = std::max(kLeastScatter_mm, kLeastOfNoise * o.noise_mm);
     Line line = line_of(inner, floor_mm);
     const double gate = 5 * line.scatter;
     std::vector<double> along;
@@ -102,7 +112,8 @@ bool find_end(const std::vector<Beside>& points, const CellOptions& o, CellEnd& 
         return n > 2 ? squares / n - sum * sum / (n * n) : 0.0;
     };
     const double growth = (stretch(2 * kLag) - stretch(kLag)) / (static_cast<double>(kLag) * gap * gap);
-    const double variation = last - skipped > 4 * kLag ? std::clamp(growth, 0.0, 1.5) : 0.5;
+    const double variation =
+        last - skipped > 4 * kLag ? std::clamp(growth, 0.0, kMostVariation) : kUsualVariation;
     out.outward_mm = end + gap / 2 * (1 + variation);
     double g1 = 0, g2 = 0, g3 = 0;
     for (std::size_t i = 0; i < last; ++i) {
@@ -127,11 +138,13 @@ bool find_end(const std::vector<Beside>& points, const CellOptions& o, CellEnd& 
 
 std::vector<CellEnd> cell_ends(const Cloud& cloud, const EdgeCurve& curve, int index,
                                const Pose& base_from_part, const CellOptions& options) {
-    const double reach = 1.5 * std::max(options.window_mm, options.beyond_mm);
+    constexpr double kCorners = 1.5;  // the corners of the window lie farther off than its sides
+    const double reach = kCorners * std::max(options.window_mm, options.beyond_mm);
     const EdgeSearch search(curve, reach);
     const Pose part_from_base = base_from_part.inverse();
     const auto cells = static_cast<std::size_t>(std::max(1.0, curve.length_mm() / options.cell_mm));
     const double length = curve.length_mm() / static_cast<double>(cells);
+    constexpr double kCountable = 1e9;  // cells
     std::vector<std::vector<Beside>> members(cells);
     for (std::size_t i = 0; i < cloud.size(); ++i) {
         const auto near = search.beside(part_from_base * cloud.points[i]);
@@ -139,9 +152,9 @@ std::vector<CellEnd> cell_ends(const Cloud& cloud, const EdgeCurve& curve, int i
             std::abs(near->normal_mm) > options.window_mm)
             continue;
         if (curve.sided && cloud.has_towards() &&
-            (base_from_part.linear() * near->foot.normal).dot(cloud.towards[i].cast<double>()) < 0.05)
+            (base_from_part.linear() * near->foot.normal).dot(cloud.towards[i].cast<double>()) < kTowards)
             continue;
-        const auto k = static_cast<std::size_t>(std::clamp(near->foot.arc_mm / length, 0.0, 1e9));
+        const auto k = static_cast<std::size_t>(std::clamp(near->foot.arc_mm / length, 0.0, kCountable));
         members[std::min(k, cells - 1)].push_back({near->outward_mm, near->normal_mm});
     }
     std::vector<CellEnd> out;

@@ -8,6 +8,9 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double kNoDirection = 1e-9;  // length of a direction between two that cancel each other
+constexpr double kSameSide = 0.6;      // cos of 53 degrees: the wanted side of an edge
+
 EdgeSample between(const EdgeSample& a, const EdgeSample& b, double u) {
     const double h = b.arc_mm - a.arc_mm, u2 = u * u, u3 = u2 * u;
     EdgeSample out;
@@ -17,7 +20,7 @@ EdgeSample between(const EdgeSample& a, const EdgeSample& b, double u) {
     out.tangent = ((1 - u) * a.tangent + u * b.tangent).normalized();
     Vector3d outward = (1 - u) * a.outward + u * b.outward;
     outward -= outward.dot(out.tangent) * out.tangent;
-    out.outward = outward.norm() > 1e-9 ? Vector3d(outward.normalized()) : a.outward;
+    out.outward = outward.norm() > kNoDirection ? Vector3d(outward.normalized()) : a.outward;
     out.normal = out.outward.cross(out.tangent);
     if (out.normal.dot(a.normal) < 0) out.normal = -out.normal;
     return out;
@@ -75,7 +78,7 @@ std::optional<BesideEdge> EdgeSearch::beside(const Vector3d& p, const Vector3d* 
     double least = 0;
     for (const int i : *list) {
         const EdgeSample& s = curve_.samples[static_cast<std::size_t>(i)];
-        if (wanted && s.outward.dot(*wanted) < 0.6) continue;
+        if (wanted && s.outward.dot(*wanted) < kSameSide) continue;
         const double d = (s.point_mm - p).squaredNorm();
         if (best < 0 || d < least) best = i, least = d;
     }

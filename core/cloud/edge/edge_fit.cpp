@@ -23,6 +23,22 @@ using Eigen::Vector3d;
 constexpr std::size_t kLeastEnds = 12;
 // Of the edges' length. With 40 % of one seen and a form of 0.1 mm, 28 of 39 truths alone were within the stated 95 %.
 constexpr double kLeastSeen = 0.5;
+constexpr double kSameFacing = 0.85;  // cos of 32 degrees: an end's sheet and the edge's
+constexpr double kWellKnown = 0.02;   // mean squared row of a direction that rough ends may move
+// Of the radius that surrounds a point: a step that counts as none while the gate is wider, and at the end.
+constexpr double kCalmWide = 0.1, kCalm = 1e-3;
+constexpr double kGateNarrows = 0.8;  // from one gate to the next
+// Starts beside the given one: so many to either side, and out of the sheet farther apart by this.
+constexpr double kMostBeside = 10, kUpSteps = 1.5;
+// In which an end is looked for: into the sheet; beyond the drawing's edge, in radii.
+constexpr double kLeastWindow_mm = 3, kMostWindow_mm = 15;
+constexpr double kBeyondRadii = 1.5, kLeastBeyond_mm = 3, kMostBeyond_mm = 40;
+constexpr double kLeastGate_mm = 0.02;
+// Steps that are the last: with the same ends, and with new ones.
+constexpr double kStep_mm = 1e-4, kSettled_mm = 0.02;
+constexpr double kShowsMost = 0.75;  // of the most ends that a place shows: it is one of those that show most
+constexpr double kAsMany = 0.85;     // of the best's ends: a rival with fewer is told apart
+constexpr double kLeastLength_mm = 1e-9, kLeastNoise_mm2 = 1e-8;
 constexpr std::size_t kMostCells = 110;  // two nodes each: form_model.h is cubic in them
 
 // One residual: the place moves against `direction`.
@@ -45,7 +61,8 @@ Equations equations(const std::vector<Row>& rows, double gate_mm, std::size_t as
     for (const Row& r : rows) s.middle += r.place / static_cast<double>(rows.size());
     double spread = 0;
     for (const Row& r : rows) spread += (r.place - s.middle).squaredNorm();
-    s.spread_mm = std::max(1e-3, std::sqrt(spread / std::max<double>(1, static_cast<double>(rows.size()))));
+    s.spread_mm =
+        std::max(kLeastSpread_mm, std::sqrt(spread / std::max<double>(1, static_cast<double>(rows.size()))));
     double sum = static_cast<double>(asked) - static_cast<double>(rows.size()) / 2;
     for (std::size_t k = 0; k < rows.size(); ++k) {
         const Row& r = rows[k];
@@ -133,7 +150,7 @@ class EdgeFitter {
             double least = 0;
             for (const EdgeSearch& search : searches) {
                 const auto near = search.beside(p, &wanted);
-                if (!near || std::abs(near->foot.normal.dot(normal)) < 0.85) continue;
+                if (!near || std::abs(near->foot.normal.dot(normal)) < kSameFacing) continue;
                 const double d = std::hypot(near->outward_mm, near->normal_mm);
                 if (!best || d < least) best = near, least = d;
             }
@@ -160,12 +177,12 @@ class EdgeFitter {
             r.end = equations(rough_rows(ends, searches, pose), gate, ends.size());
             if (r.end.system.matched < 6) break;
             // Where ends of others count too, in well known directions alone: the others are left to the exact ends.
-            Vector6 motion = step_of(r.end.system, 0.02);
+            Vector6 motion = step_of(r.end.system, kWellKnown);
             if (const double longest = motion.norm(); longest > gate) motion *= gate / longest;
             pose = moved(pose, r.end.system, motion);
-            const bool calm = motion.norm() < (gate > radius_ ? 0.1 : 1e-3) * radius_;
+            const bool calm = motion.norm() < (gate > radius_ ? kCalmWide : kCalm) * radius_;
             if (gate <= radius_ && calm) break;
-            if (calm || k >= 20) gate = std::max(radius_, 0.8 * gate);
+            if (calm || k >= 20) gate = std::max(radius_, kGateNarrows * gate);
         }
         r.pose = pose;
         r.end = equations(rough_rows(ends, searches, pose), radius_, ends.size());
@@ -197,12 +214,13 @@ class EdgeFitter {
         for (const EdgeCurve& edge : edges_)
             for (const EdgeSample& s : edge.samples) normals += s.normal;
         const Vector3d out = axes.col(2), up = (options_.start->linear() * normals).normalized();
-        const int steps = static_cast<int>(std::min(10.0, std::ceil(options_.start_mm / (2 * radius_))));
+        const int steps =
+            static_cast<int>(std::min(kMostBeside, std::ceil(options_.start_mm / (2 * radius_))));
         for (int k = -steps; k <= steps; ++k) {
             if (stopped()) return refuse(FitStatus::cancelled, "cancelled");
             for (const int j : {0, -1, 1}) {
                 Pose start = *options_.start;
-                start.translation() += 2 * radius_ * (k * out + 1.5 * j * up);
+                start.translation() += 2 * radius_ * (k * out + kUpSteps * j * up);
                 look(start, near);
             }
         }
@@ -225,7 +243,7 @@ class EdgeFitter {
         for (const EdgeCurve& e : edges_) lengths[e.edge] = e.length_mm();
         for (const auto& [edge, l] : lengths) length += l;
         CellOptions o;
-        o.window_mm = std::clamp(3 * radius_, 3.0, 15.0);
+        o.window_mm = std::clamp(3 * radius_, kLeastWindow_mm, kMostWindow_mm);
         o.beyond_mm = window;
         o.cell_mm = std::max(radius_ / 2, length / static_cast<double>(kMostCells));
         o.noise_mm = noise_;
@@ -266,7 +284,7 @@ class EdgeFitter {
     Exact exact(const Pose& rough) const {
         Exact x;
         x.pose = rough;
-        double window = std::clamp(1.5 * radius_, 3.0, 40.0);
+        double window = std::clamp(kBeyondRadii * radius_, kLeastBeyond_mm, kMostBeyond_mm);
         for (int round = 0; round < 8; ++round) {
             x.ends = ends_at(x.pose, window);
             if (x.ends.size() < kLeastEnds || stopped()) return x;
@@ -275,14 +293,14 @@ class EdgeFitter {
                 x.system = equations(rows_of(x.ends, x.pose), gate, x.ends.size()).system;
                 const Vector6 motion = step_of(x.system);
                 moved_mm = std::max(moved_mm, motion.norm());
-                gate = std::clamp(4.5 * kMadToSigma * x.system.median_mm, 0.02, gate);
+                gate = std::clamp(kGateSigmas * kMadToSigma * x.system.median_mm, kLeastGate_mm, gate);
                 const Pose to = moved(x.pose, x.system, motion);
                 shift_ends(x.ends, x.pose, to);
                 x.pose = to;
-                if (motion.norm() < 1e-4) break;
+                if (motion.norm() < kStep_mm) break;
             }
             x.gate_mm = gate;
-            if (round > 0 && moved_mm < 0.02) break;
+            if (round > 0 && moved_mm < kSettled_mm) break;
         }
         x.ends = ends_at(x.pose, window);
         x.system = equations(rows_of(x.ends, x.pose), x.gate_mm, x.ends.size()).system;
@@ -318,7 +336,8 @@ class EdgeFitter {
         std::size_t shown = 0;
         for (const Exact& x : exact_) shown = std::max(shown, x.inside(x.gate_mm));
         for (const Exact& x : exact_)
-            if (x.ends.size() >= kLeastEnds && x.inside(x.gate_mm) >= 0.75 * static_cast<double>(shown) &&
+            if (x.ends.size() >= kLeastEnds &&
+                x.inside(x.gate_mm) >= kShowsMost * static_cast<double>(shown) &&
                 (gate <= 0 || x.gate_mm < gate))
                 gate = x.gate_mm;
         for (const Exact& x : exact_)
@@ -342,7 +361,8 @@ class EdgeFitter {
             return refuse(FitStatus::no_fit,
                           Text("the fit left its start by more than {:g} mm or {:g} degrees",
                                options_.start_mm, options_.start_deg));
-        const double limit = options_.form_limit_mm > 0 ? options_.form_limit_mm : 0.015 * surface_.size_mm();
+        const double limit =
+            options_.form_limit_mm > 0 ? options_.form_limit_mm : fitting::kFormLimit * surface_.size_mm();
         if (!(system_.median_mm <= limit))
             return refuse(
                 FitStatus::no_fit,
@@ -404,7 +424,7 @@ class EdgeFitter {
         double length = 0;
         for (const auto& [edge, l] : lengths) length += l;
         const double cell = std::max(radius_ / 2, length / static_cast<double>(kMostCells));
-        return std::min(1.0, static_cast<double>(ends) * cell / std::max(1e-9, length));
+        return std::min(1.0, static_cast<double>(ends) * cell / std::max(kLeastLength_mm, length));
     }
 
     bool state() {
@@ -428,7 +448,7 @@ class EdgeFitter {
                 node.row << node.normal,
                     (node.place_mm - system_.middle).cross(node.normal) / system_.spread_mm;
                 node.residual_mm = out ? e.outward_mm : e.normal_mm;
-                node.noise_mm2 = std::max(out ? outward : normal, 1e-8);
+                node.noise_mm2 = std::max(out ? outward : normal, kLeastNoise_mm2);
                 information += node.row * node.row.transpose() / node.noise_mm2;
                 plain += node.row * node.row.transpose();
                 nodes.push_back(node);
@@ -483,13 +503,13 @@ class EdgeFitter {
                 !fitting::within_start(x.pose, surface_, options_))
                 continue;
             const Vector6 d = difference(x.pose, fit.base_from_part);
-            if (d.dot(solve_symmetric(fit.covariance, d).col(0)) <= 15) continue;  // chi^2 of 6 at 98 %
+            if (d.dot(solve_symmetric(fit.covariance, d).col(0)) <= fitting::kNoOtherPlace) continue;
             FitRival rival;
             rival.base_from_part = x.pose;
             rival.for_best = fit.points_used;
             rival.for_rival = x.inside(fit.gate_mm);
             rival.told_apart =
-                static_cast<double>(rival.for_rival) < 0.85 * static_cast<double>(rival.for_best);
+                static_cast<double>(rival.for_rival) < kAsMany * static_cast<double>(rival.for_best);
             const bool known = std::any_of(fit.rivals.begin(), fit.rivals.end(), [&](const FitRival& r) {
                 return fitting::corner_distance_mm(surface_, x.pose, r.base_from_part) < 2 * radius_;
             });
@@ -540,7 +560,7 @@ class EdgeFitter {
         map.three_sigma_mm = 3 * std::sqrt(std::max(0.0, squares / n - map.mean_mm * map.mean_mm));
         out_.normal_rms_mm = std::sqrt(normals / n);
         const double cell = std::max(radius_ / 2, length / static_cast<double>(kMostCells));
-        map.share_seen = std::min(1.0, n * cell / std::max(1e-9, length));
+        map.share_seen = std::min(1.0, n * cell / std::max(kLeastLength_mm, length));
         make_histogram(map, 21);
     }
 

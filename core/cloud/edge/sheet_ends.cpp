@@ -14,7 +14,15 @@ namespace seamwright {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kOpenDeg = 100;  // of a straight border's 180, a corner's 270, a surrounded point's 45
+constexpr double kOpenDeg = 100;       // of a straight border's 180, a corner's 270, a surrounded point's 45
+constexpr double kSurroundedDeg = 75;  // open about a point at most
+constexpr double kOnePoint_mm2 = 1e-12;  // squared distance
+// Of the cloud's size: between these the radius is looked for, growing by steps of kRadiusGrows until it surrounds
+// kMostSurrounded of the points asked.
+constexpr double kLeastRadius = 1e-4, kMostRadius = 0.2, kRadiusGrows = 1.3, kMostSurrounded = 0.6;
+// The flat cone of a sheet: half its thickness in the noise or of the radius, and its slope.
+constexpr double kThickNoise = 2.5, kThickShare = 0.02, kConeSlope = 0.06;
+constexpr double kLeastTriple = 0.05;  // of the radius' square: twice the area of a triple that tells a plane
 constexpr std::size_t kMostPoints = 200000, kMostCandidates = 20000;
 
 // Points by cubes of one size.
@@ -95,7 +103,7 @@ double plane_of(const std::vector<Vector3d>& offsets, Vector3d& normal) {
 
 bool surrounded(const std::vector<Vector3d>& offsets, const Vector3d& normal) {
     Vector3d middle;
-    return offsets.size() >= 8 && opening(offsets, normal, middle) < 75;
+    return offsets.size() >= 8 && opening(offsets, normal, middle) < kSurroundedDeg;
 }
 
 }  // namespace
@@ -112,10 +120,10 @@ SheetEnds sheet_ends(const Cloud& given, const std::function<bool()>& cancelled)
         grid.near(p, near);
         offsets.clear();
         for (const std::size_t i : near)
-            if (const Vector3d o = points[i] - p; o.squaredNorm() > 1e-12) offsets.push_back(o);
+            if (const Vector3d o = points[i] - p; o.squaredNorm() > kOnePoint_mm2) offsets.push_back(o);
     };
-    double radius = std::max(2 * spacing_mm(cloud), 1e-4 * size);
-    for (; radius < 0.2 * size; radius *= 1.3) {
+    double radius = std::max(2 * spacing_mm(cloud), kLeastRadius * size);
+    for (; radius < kMostRadius * size; radius *= kRadiusGrows) {
         const PointGrid grid(cloud.points, radius);
         constexpr int kAsked = 300;
         int round = 0;
@@ -129,17 +137,17 @@ SheetEnds sheet_ends(const Cloud& given, const std::function<bool()>& cancelled)
             ++round;
             scatter.push_back(s);
         }
-        if (round < 0.6 * kAsked) continue;
+        if (round < kMostSurrounded * kAsked) continue;
         out.noise_mm = median(scatter);
         break;
     }
-    if (!(radius < 0.2 * size)) return out;
+    if (!(radius < kMostRadius * size)) return out;
     // Twice the radius that surrounds a point: an end has but half of the neighbours.
     radius *= 2;
     out.radius_mm = radius;
     const std::vector<Vector3d> points = one_a_cell(cloud.points, radius / 8);
     const PointGrid grid(points, radius);
-    const double thick = std::max(2.5 * out.noise_mm, 0.02 * radius);
+    const double thick = std::max(kThickNoise * out.noise_mm, kThickShare * radius);
     const std::size_t stride = std::max<std::size_t>(1, points.size() / kMostCandidates);
     std::vector<Vector3d> best, with;
     for (std::size_t i = 0; i < points.size(); i += stride) {
@@ -150,11 +158,11 @@ SheetEnds sheet_ends(const Cloud& given, const std::function<bool()>& cancelled)
         Vector3d normal = Vector3d::UnitZ();
         for (int trial = 0; trial < 24; ++trial) {
             const Vector3d n = offsets[random() % offsets.size()].cross(offsets[random() % offsets.size()]);
-            if (n.norm() < 0.05 * radius * radius) continue;
+            if (n.norm() < kLeastTriple * radius * radius) continue;
             const Vector3d unit = n.normalized();
             with.clear();
             for (const Vector3d& o : offsets)
-                if (std::abs(o.dot(unit)) < thick + 0.06 * o.norm()) with.push_back(o);
+                if (std::abs(o.dot(unit)) < thick + kConeSlope * o.norm()) with.push_back(o);
             if (with.size() > best.size()) best = with, normal = unit;
         }
         if (best.size() < 6) continue;

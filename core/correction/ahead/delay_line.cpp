@@ -8,6 +8,9 @@ namespace seamwright {
 namespace {
 
 constexpr double kForgetful = 0.1;  // share of a new measure in the means
+constexpr double kLeastVarianceMm2 = 1e-12;
+constexpr double kWellInside = 1.5;  // of a neighbour's distance: half the window that holds it
+constexpr double kOnePlace = 1e-9;   // of the squared distances: measures that tell no slope
 
 double tricube(double u) {
     if (!(u < 1)) return 0;
@@ -51,7 +54,7 @@ bool DelayLine::add(const AheadMeasure& measure) {
         const AheadOffset expected = line_at(nearest);
         const Eigen::Vector2d rest = measure.off_mm - expected.off_mm;
         Eigen::Matrix2d spread = expected.covariance_mm2 + measure.covariance_mm2;
-        spread.diagonal().array() += change * change + 1e-12;
+        spread.diagonal().array() += change * change + kLeastVarianceMm2;
         if (!(rest.dot(spread.inverse() * rest) <= options_.gate * options_.gate)) return false;
         if (distance < kSamePlaceMm) return true;
         mean_pitch_mm_ += (mean_pitch_mm_ > 0 ? kForgetful : 1) *
@@ -77,12 +80,14 @@ AheadOffset DelayLine::line_at(double s_mm) const {
     const std::size_t next = above(s_mm);
     // At least the neighbours, well inside.
     double w = half_width_mm_;
-    const auto reach = [&](std::size_t i) { w = std::max(w, 1.5 * std::abs(measures_[i].s_mm - s_mm)); };
+    const auto reach = [&](std::size_t i) {
+        w = std::max(w, kWellInside * std::abs(measures_[i].s_mm - s_mm));
+    };
     if (next > 0) reach(next - 1);
     if (next < measures_.size()) reach(next);
     const std::size_t first = above(s_mm - w), last = above(s_mm + w);
     const auto weight = [&](const AheadMeasure& m) {
-        return tricube(std::abs(m.s_mm - s_mm) / w) / std::max(m.covariance_mm2.trace(), 1e-12);
+        return tricube(std::abs(m.s_mm - s_mm) / w) / std::max(m.covariance_mm2.trace(), kLeastVarianceMm2);
     };
     double sum = 0, sum_d = 0, sum_dd = 0;
     for (std::size_t i = first; i < last; ++i) {
@@ -94,7 +99,7 @@ AheadOffset DelayLine::line_at(double s_mm) const {
     AheadOffset out;
     out.state = AheadState::known;
     const double determinant = sum * sum_dd - sum_d * sum_d;
-    const bool line = determinant > 1e-9 * sum * sum_dd;
+    const bool line = determinant > kOnePlace * sum * sum_dd;
     for (std::size_t i = first; i < last; ++i) {
         const AheadMeasure& m = measures_[i];
         const double k = weight(m), d = m.s_mm - s_mm;

@@ -48,12 +48,14 @@ std::vector<GuidePoint> smoothed_guide(const std::vector<GuidePoint>& points, do
 }
 
 Expected<GuideCurve> GuideCurve::make(const std::vector<GuidePoint>& points) {
+    constexpr double kNoDirection = 1e-9;
+    constexpr double kUpwardAlong = 0.1;  // sine of 6 degrees
     const Text where = "guide";
     if (points.size() < 2) return input_error("a guide needs two points or more", where);
     GuideCurve g;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const GuidePoint& p = points[i];
-        if (!p.point_mm.allFinite() || !p.up.allFinite() || !(p.up.norm() > 1e-9))
+        if (!p.point_mm.allFinite() || !p.up.allFinite() || !(p.up.norm() > kNoDirection))
             return input_error(Text("point {} of the guide holds a number that is none", i + 1), where);
         Place place{p.point_mm, Eigen::Vector3d::Zero(), p.up.normalized(), 0};
         if (i > 0) {
@@ -76,7 +78,7 @@ Expected<GuideCurve> GuideCurve::make(const std::vector<GuidePoint>& points) {
                 "end it at the corner, or give it closer points");
         Place& place = g.places_[i];
         place.along = (before + after).normalized();
-        if (place.along.cross(place.up).norm() < 0.1)
+        if (place.along.cross(place.up).norm() < kUpwardAlong)
             return input_error(Text("the upward direction of point {} of the guide runs along it", i + 1),
                                where);
     }
@@ -113,6 +115,7 @@ GuideCurve::Foot GuideCurve::foot_at(const Eigen::Vector3d& p, double s_mm) cons
 }
 
 GuideCurve::Foot GuideCurve::foot(const Eigen::Vector3d& p, double near_mm, double reach_mm) const {
+    constexpr double kLinear = 1e-12;  // of the linear term: the square one is none
     const std::size_t first = within(near_mm - reach_mm).i, last = within(near_mm + reach_mm).i;
     Foot best;
     double least = -1;
@@ -123,7 +126,7 @@ GuideCurve::Foot GuideCurve::foot(const Eigen::Vector3d& p, double near_mm, doub
         const Eigen::Vector3d q = p - a.point, d = b.point - a.point, e = b.along - a.along;
         const double c0 = q.dot(a.along), c1 = q.dot(e) - d.dot(a.along), c2 = -d.dot(e);
         double u = 0;
-        if (std::abs(c2) < 1e-12 * std::abs(c1)) {
+        if (std::abs(c2) < kLinear * std::abs(c1)) {
             u = c1 != 0 ? -c0 / c1 : 0;
         } else {
             const double root = std::sqrt(std::max(0.0, c1 * c1 - 4 * c2 * c0));

@@ -150,7 +150,8 @@ MonteCarloFigure figure_of(std::vector<double>& values) {
     for (const double v : values) f.u += (v - f.mean) * (v - f.mean) / (n - 1);
     f.u = std::sqrt(f.u);
     // JCGM 101, 7.7: the interval from the sorted values, as many left out on either side.
-    const auto out = static_cast<std::ptrdiff_t>(0.025 * n);
+    constexpr double kOutside = 0.025;
+    const auto out = static_cast<std::ptrdiff_t>(kOutside * n);
     const auto low = values.begin() + out, high = values.end() - 1 - out;
     std::nth_element(values.begin(), low, values.end());
     f.low = *low;

@@ -12,6 +12,10 @@ namespace seamwright {
 namespace {
 
 constexpr double kMostBetweenRegions_deg = 90;
+constexpr double kRigid = 1e-6;  // what a rotation's entries may be off
+// Of a covariance: what its halves may differ by, and what an eigenvalue may be below 0 (of the largest, of 1 at least).
+constexpr double kAsymmetry = 1e-9, kNegative = 1e-9;
+constexpr double kSamePoint_mm = 1e-9;
 
 double sigma_at(const PathRegion& region, const Eigen::Vector3d& p) {
     Eigen::Matrix<double, 3, 6> j;
@@ -33,18 +37,18 @@ Expected<void> check(std::span<const PathPoint> points, std::span<const PathRegi
     for (std::size_t r = 0; r < regions.size(); ++r) {
         const Text where("region {}", names[r]);
         const auto rigid =
-            pose_from_matrix(regions[r].displacement.workobject_from_movedworkobject.matrix(), where, 1e-6);
+            pose_from_matrix(regions[r].displacement.workobject_from_movedworkobject.matrix(), where, kRigid);
         if (!rigid) return tl::unexpected(rigid.error());
         const Matrix6& c = regions[r].covariance;
         if (!c.allFinite()) return input_error("the covariance holds a value that is not finite", where);
         const Eigen::VectorXd values = symmetric_eigen(c).values;
-        if (!c.isApprox(c.transpose(), 1e-9) || values[0] < -1e-9 * std::max(1.0, values[5]))
+        if (!c.isApprox(c.transpose(), kAsymmetry) || values[0] < -kNegative * std::max(1.0, values[5]))
             return input_error("the covariance is not symmetric and positive", where);
     }
     bool any = false;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Text where("path point {}", i + 1);
-        SEAM_OK(pose_from_matrix(points[i].workobject_from_tool.matrix(), where, 1e-6));
+        SEAM_OK(pose_from_matrix(points[i].workobject_from_tool.matrix(), where, kRigid));
         if (points[i].region < -1 || points[i].region >= static_cast<int>(regions.size()))
             return input_error("its region is not known", where);
         any = any || points[i].region >= 0;
@@ -126,7 +130,7 @@ std::vector<Transition> transitions_of(std::span<const PathPoint> points, const 
 double curvature(const Eigen::Vector3d& before, const Eigen::Vector3d& at, const Eigen::Vector3d& after) {
     const Eigen::Vector3d u = at - before, v = after - at;
     const double a = u.norm(), b = v.norm();
-    if (!(a > 1e-9 && b > 1e-9)) return 0;
+    if (!(a > kSamePoint_mm && b > kSamePoint_mm)) return 0;
     return 1000 * std::atan2(u.cross(v).norm(), u.dot(v)) / (0.5 * (a + b));
 }
 

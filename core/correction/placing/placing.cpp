@@ -21,6 +21,8 @@ namespace {
 constexpr double kHoldPerMm2 = 1e-4;
 constexpr double kBeyond = 1e6;  // cost of a set that does not hold with one lost
 constexpr double kBetter = 1 - 1e-6;
+constexpr double kNotUnit = 1e-6;  // what a direction's length may be off 1
+constexpr double kByG = 1e-3;      // share of g in that cost: it decides among sets that lose alike
 constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
 
 SpotPlacing::Impl::At information_at(const PlacingTask& task, const Displacement& d, int& dof, int& size) {
@@ -92,8 +94,8 @@ Expected<void> check(const PlacingTask& task) {
     if (!(task.three_sigma_mm > 0) || !std::isfinite(task.three_sigma_mm))
         return input_error("the wanted 3 sigma is not above 0 mm");
     for (const BeadPoint& p : task.bead)
-        if (!p.point_mm.allFinite() || std::abs(p.normal.norm() - 1) > 1e-6 ||
-            std::abs(p.binormal.norm() - 1) > 1e-6)
+        if (!p.point_mm.allFinite() || std::abs(p.normal.norm() - 1) > kNotUnit ||
+            std::abs(p.binormal.norm() - 1) > kNotUnit)
             return input_error("a point of the bead is not finite, or a direction there has not length 1");
     for (const PlacingCandidate& c : task.candidates)
         for (int i = 0; i < 3; ++i)
@@ -139,7 +141,7 @@ SpotPlacing::Impl::Judged SpotPlacing::Impl::judge(std::span<const std::size_t> 
 }
 
 double SpotPlacing::Impl::cost(const Judged& j) const {
-    return j.lost <= task.three_sigma_mm || !task.one_may_be_lost ? j.g : kBeyond + j.lost + 1e-3 * j.g;
+    return j.lost <= task.three_sigma_mm || !task.one_may_be_lost ? j.g : kBeyond + j.lost + kByG * j.g;
 }
 
 bool SpotPlacing::Impl::place_taken(std::span<const std::size_t> chosen, std::size_t candidate,

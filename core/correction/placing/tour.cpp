@@ -6,6 +6,8 @@
 namespace seamwright {
 namespace {
 
+constexpr double kShorter_mm = 1e-9;
+
 double length_of(std::span<const Eigen::Vector3d> p, const std::vector<std::size_t>& order) {
     double sum = 0;
     for (std::size_t i = 1; i < order.size(); ++i) sum += (p[order[i]] - p[order[i - 1]]).norm();
@@ -42,7 +44,7 @@ std::vector<std::size_t> short_way(std::span<const Eigen::Vector3d> points_mm, d
                     const auto last = order.begin() + static_cast<std::ptrdiff_t>(k);
                     std::reverse(first, last);
                     const double turned = length_of(points_mm, order);
-                    if (turned < length - 1e-9) {
+                    if (turned < length - kShorter_mm) {
                         length = turned;
                         better = true;
                     } else {
@@ -50,7 +52,7 @@ std::vector<std::size_t> short_way(std::span<const Eigen::Vector3d> points_mm, d
                     }
                 }
         }
-        if (length < length_mm - 1e-9) length_mm = length, best = order;
+        if (length < length_mm - kShorter_mm) length_mm = length, best = order;
     }
     return best;
 }

@@ -12,15 +12,19 @@ constexpr int kHoleLines = 6;
 constexpr double kByChance = 1e-5;
 constexpr int kStepSide = 12, kStepShort = 6, kStepFewest = 4, kStepBetween = 1;
 constexpr double kStepSigma = 6;
-constexpr double kGoesOn = 5;   // sigma
-constexpr double kCloseUp = 4;  // sigma
+constexpr double kWorthLooking = 0.3;  // of kStepSigma: lower jumps are none
+constexpr double kGoesOn = 5;          // sigma
+constexpr double kCloseUp = 4;         // sigma
 constexpr double kRisen = 0.75;
-constexpr double kStepRms = 1.6;  // sigma: a side that is no line
-constexpr double kSteepWall = 2;  // slope: what stands between two sheets is no surface to follow
-constexpr double kShadow = 0.6;   // of a step's height: so far a higher sheet may hide the lower one
+constexpr double kStepRms = 1.6;     // sigma: a side that is no line
+constexpr double kBentPitch = 0.02;  // of the pitch, that it is off beside its noise
+constexpr double kSteepWall = 2;     // slope: what stands between two sheets is no surface to follow
+constexpr double kShadow = 0.6;      // of a step's height: so far a higher sheet may hide the lower one
 constexpr double kCoverSigma = 4;
 constexpr std::size_t kFragments = 4;  // pieces between a sheet and the one that hides it
 constexpr int kFewestEmpty = 3;
+constexpr double kEvenPitches = 1.5;  // within which a field's sides lie evenly about x = 0
+constexpr double kLeastPitch_mm = 1e-12, kLeastAdvance_mm2 = 1e-24;  // the latter squared
 constexpr int kFewestLines = 256;  // of a sensor: fewer that lie evenly about x = 0 do so by chance
 constexpr int kRimLines = 5;       // an end nearer to the field's rim is none
 
@@ -40,7 +44,7 @@ ContourSheets::Side ContourSheets::side(int from, int to, double at) const {
     s.variance = (1 + ahead * ahead / kk) / n;
     const double xx = m[6] - m[1] * m[1], xz = m[7] - m[1] * m[2], zz = m[8] - m[2] * m[2];
     const double square = s.vx * s.vx * zz - 2 * s.vx * s.vz * xz + s.vz * s.vz * xx;
-    const double length2 = std::max(s.vx * s.vx + s.vz * s.vz, 1e-24);
+    const double length2 = std::max(s.vx * s.vx + s.vz * s.vz, kLeastAdvance_mm2);
     s.rms = std::sqrt(std::max(square / length2, 0.0) * n / (n - 2));
     s.spacing = std::sqrt(length2);
     s.ok = true;
@@ -80,8 +84,8 @@ ContourSheets::Jump ContourSheets::jump(int i, int between, int points) const {
 // Height of the step, or 0 where noise, a sharp edge or a flank explains it.
 double ContourSheets::step(const Jump& over_all, int i, int between) const {
     if (!(over_all.height > 0)) return 0;
-    if (over_all.height < 0.3 * kStepSigma * noise_ * over_all.spread) return 0;
-    const auto bent = [&](const Jump& j) { return j.rms > kStepRms * noise_ + 0.02 * pitch_.distance; };
+    if (over_all.height < kWorthLooking * kStepSigma * noise_ * over_all.spread) return 0;
+    const auto bent = [&](const Jump& j) { return j.rms > kStepRms * noise_ + kBentPitch * pitch_.distance; };
     const Jump close = jump(i, between, kStepShort);
     const Jump& j = bent(over_all) ? close : over_all;
     if (!(j.height > 0) || bent(j)) return 0;
@@ -133,7 +137,7 @@ void ContourSheets::find_steps() {
     for (int between = 1; between <= kStepBetween; ++between)
         for (int i = 0; i + between + 1 < n; ++i) {
             // A jump that is not far from one already says whether it is worth looking.
-            if (!(jumps_[i].height > 0.3 * kStepSigma * noise_ * jumps_[i].spread)) continue;
+            if (!(jumps_[i].height > kWorthLooking * kStepSigma * noise_ * jumps_[i].spread)) continue;
             bool free = true;
             for (int k = std::max(0, i - kStepSide / 2); k <= std::min(n - 1, i + between + kStepSide / 2);
                  ++k)
@@ -158,7 +162,8 @@ void ContourSheets::divide(const Profile& profile) {
         // Lines that were not delivered at all show in x.
         if (line_[i + 1] - line_[i] == 1 &&
             pitch_.is_gap(all_x_[i + 1] - all_x_[i], all_z_[i + 1] - all_z_[i]))
-            lines = static_cast<int>(std::abs(all_x_[i + 1] - all_x_[i]) / std::max(pitch_.along_x, 1e-12));
+            lines = static_cast<int>(std::abs(all_x_[i + 1] - all_x_[i]) /
+                                     std::max(pitch_.along_x, kLeastPitch_mm));
         return lines;
     };
     double runs = 0, pairs = 0;
@@ -208,7 +213,7 @@ void ContourSheets::judge_ends(const Profile& profile, const SensorField& field)
     bool told = empty >= kFewestEmpty || is_empty(0) || is_empty(lines - 1);
     if (!told) {
         const double a = profile.x_mm.front(), b = profile.x_mm.back();
-        told = std::abs(a + b) <= 1.5 * pitch_.along_x + 3 * noise_ && lines >= kFewestLines;
+        told = std::abs(a + b) <= kEvenPitches * pitch_.along_x + 3 * noise_ && lines >= kFewestLines;
     }
     const double beside = kRimLines * pitch_.along_x;
     const auto at_rim = [&](int i) {

@@ -12,6 +12,8 @@ namespace {
 // The least that a point tells of an edge: a third of the pitch, though the outermost place is seen.
 constexpr double kSteepens = 1.2, kUnseenDrop = 1.2;
 constexpr double kSeenEdge = 1.0 / 3;
+constexpr double kLeastSurface_mm = 0.1, kMostSurface_mm = 1000, kMostSkip_mm = 100;
+constexpr double kAcross = 0.2;  // cos of 78 degrees: a surface that stands across the other one
 
 }  // namespace
 
@@ -35,7 +37,7 @@ Expected<void> check(const GapFlushSettings& s) {
         return input_error("the window of gap and flush is empty", "window",
                            "give a minimum below the maximum");
     const auto in = [](double value, double least, double most) { return value >= least && value <= most; };
-    if (!in(s.surface_mm, 0.1, 1000) || !in(s.edge_skip_mm, 0, 100))
+    if (!in(s.surface_mm, kLeastSurface_mm, kMostSurface_mm) || !in(s.edge_skip_mm, 0, kMostSkip_mm))
         return input_error(
             Text("a surface of {} mm, {} mm beside the edge, gives no line", s.surface_mm, s.edge_skip_mm),
             "surface_mm, edge_skip_mm", "give 0.1 to 1000 mm of surface and 0 to 100 mm beside the edge");
@@ -136,7 +138,7 @@ GapFlush GapFlushGauge::measure(const Profile& profile) {
     // The other surface at the place along u where its edge is.
     const Eigen::Vector2d d = other.line.direction;
     const double along_u = d.dot(u);
-    if (std::abs(along_u) < 0.2) {
+    if (std::abs(along_u) < kAcross) {
         result.status = GapFlushStatus::ill_conditioned;
         result.message = "the two surfaces stand across each other: flush has no meaning";
         return result;

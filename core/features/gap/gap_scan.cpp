@@ -15,6 +15,11 @@ constexpr double kPlaceWindows = 6;      // to either side, for the line that th
 constexpr std::size_t kMostAbout = 128;  // points that a local line takes: a robot that stands still gives
                                          // thousands at one place
 
+constexpr double kRigid = 1e-6;  // what a rotation's entries may be off
+constexpr double kSamePath_mm = 1e-6;
+// Sum of squares along the path: middles that hardly travel tell no direction.
+constexpr double kLeastTravel_mm2 = 1e-2;
+
 ParameterValues values_of(const GapScanOptions& o) {
     return {{"nozzle_mm", o.nozzle_mm},
             {"clearance_mm", o.clearance_mm},
@@ -33,7 +38,7 @@ Expected<void> check(std::span<const GapSection> sections, const GapScanOptions&
     SEAM_OK(check(o.gauge));
     for (std::size_t i = 0; i < sections.size(); ++i) {
         const Text where("profile {}", i + 1);
-        SEAM_OK(pose_from_matrix(sections[i].frame_from_sensor.matrix(), where, 1e-6));
+        SEAM_OK(pose_from_matrix(sections[i].frame_from_sensor.matrix(), where, kRigid));
         if (sections[i].profile.size() > 0 && !sections[i].profile.filtered())
             return input_error("it was not filtered", where);
     }
@@ -75,7 +80,7 @@ class Along {
         const std::size_t half = near.size() / 2;
         for (std::size_t k = 0; k + half < near.size(); ++k) {
             const double ds = near[k + half]->point->path_mm - near[k]->point->path_mm;
-            if (ds > 1e-6) values.push_back((near[k + half]->x_mm - near[k]->x_mm) / ds);
+            if (ds > kSamePath_mm) values.push_back((near[k + half]->x_mm - near[k]->x_mm) / ds);
         }
         const double slope = values.empty() ? 0 : median(values);
         values.clear();
@@ -116,8 +121,8 @@ Eigen::Vector3d direction_of(const std::vector<const Along::Measured*>& about,
     Eigen::Matrix3d c = Eigen::Matrix3d::Zero();
     for (const auto* m : about) c += (m->point->middle_mm - mean) * (m->point->middle_mm - mean).transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(c);
-    // Middles that hardly travel tell no direction.
-    if (!(solver.eigenvalues()[2] > 4 * solver.eigenvalues()[1]) || solver.eigenvalues()[2] < 1e-2)
+    if (!(solver.eigenvalues()[2] > 4 * solver.eigenvalues()[1]) ||
+        solver.eigenvalues()[2] < kLeastTravel_mm2)
         return fallback;
     const Eigen::Vector3d t = solver.eigenvectors().col(2);
     return t.dot(about.back()->point->middle_mm - about.front()->point->middle_mm) < 0 ? Eigen::Vector3d(-t)

@@ -13,6 +13,7 @@ constexpr double kHoleInside = 2.5;  // within a piece, where single returns may
 constexpr double kRimEnd_mm = 3;     // of a piece, that may belong to the other part
 constexpr double kNoiseGate = 4.2;   // sigma
 constexpr double kFlattens = 0.6;    // of the slope before
+constexpr double kMostDrop = 1.2;    // of what a round rim drops in its last line
 constexpr int kSparks = 2;           // points passed over
 constexpr double kMostLines = 6;     // without return, within a rim
 constexpr double kFace_mm = 1;       // from a surface to the first point on its cut face, per line
@@ -102,7 +103,7 @@ double GapSides::noise_of(int first, int last) const {
 // The last point of the part that goes on from `from`; `stop` is no more of it.
 int GapSides::walked(int from, int step, int stop, double noise) const {
     const int w = std::clamp(static_cast<int>(std::ceil(kSlopeNoise * noise / pitch_)), 1, 40);
-    const double steeper = 1.2 * w / (std::sqrt(w + 1.0) - 1);
+    const double steeper = kMostDrop * w / (std::sqrt(w + 1.0) - 1);
     trail_.clear();
     for (int i = from, n = 0; n <= w && i >= 0 && i < static_cast<int>(x_.size()); i -= step, ++n)
         trail_.push_back(i);

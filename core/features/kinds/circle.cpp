@@ -31,6 +31,15 @@ namespace seamwright {
 namespace {
 
 constexpr int kFewestOnArc = 6;
+constexpr double kCircleGate = 3.5, kCircleGateMore = 1.05;  // robust sigma; and by how much wider it stands
+constexpr double kCircleLeastTolerance_mm = 1e-6, kCircleLeastGate_mm = 1e-9;  // where there is no noise
+// Of the known radius: between these a circle through three points is one of it.
+constexpr double kCircleSmaller = 0.7, kCircleLarger = 1.4;
+constexpr double kCircleShortRow = 0.15;  // of the longest row: a straight that crosses the rim
+constexpr double kCircleRowEnd = 0.06;    // of a row, that it loses where the contour goes on
+constexpr double kCircleStep = 0.3;       // of the radius, at most
+constexpr double kCircleSettled = 1e-9;   // of 1 mm and the radius
+constexpr double kCircleUncertain = 0.1;  // of the radius: the centre's sigma from which the arc is too short
 
 std::vector<ParameterInfo> circle_parameters() {
     return with_window({
@@ -75,14 +84,16 @@ class CircleFinder final : public FeatureFinder {
         const Eigen::Vector2d a(points_.x[i], points_.z[i]);
         const Eigen::Vector2d b = Eigen::Vector2d(points_.x[j], points_.z[j]) - a;
         const Eigen::Vector2d c = Eigen::Vector2d(points_.x[k], points_.z[k]) - a;
+        constexpr double kStraight = 1e-12;
         const double cross = 2 * (b.x() * c.y() - b.y() * c.x());
-        if (!(std::abs(cross) > 1e-12 * (b.squaredNorm() + c.squaredNorm()))) return false;
+        if (!(std::abs(cross) > kStraight * (b.squaredNorm() + c.squaredNorm()))) return false;
         const double bb = b.squaredNorm(), cc = c.squaredNorm();
         const Eigen::Vector2d centre((c.y() * bb - b.y() * cc) / cross, (b.x() * cc - c.x() * bb) / cross);
         circle.centre = a + centre;
         circle.radius = centre.norm();
         if (known_ > 0) {
-            if (circle.radius < 0.7 * known_ || circle.radius > 1.4 * known_) return false;
+            if (circle.radius < kCircleSmaller * known_ || circle.radius > kCircleLarger * known_)
+                return false;
             // Keep the middle of the arc and put the centre at the known distance from it.
             const Eigen::Vector2d m(points_.x[j], points_.z[j]);
             circle.centre = m + (circle.centre - m) * (known_ / circle.radius);
@@ -128,7 +139,7 @@ class CircleFinder final : public FeatureFinder {
     bool start(Circle& best, double& best_arc) const {
         const int n = static_cast<int>(points_.x.size());
         const double noise = contour_noise_mm(points_.x, points_.z, scratch_);
-        const double tolerance = std::max(3 * noise, 1e-6);
+        const double tolerance = std::max(3 * noise, kCircleLeastTolerance_mm);
         int best_count = 0, best_any = 0;
         Circle any;
         const auto try_circle = [&](const Circle& c) {
@@ -146,11 +157,14 @@ class CircleFinder final : public FeatureFinder {
                 any = c;
             }
         };
+        // Of the contour, from the first to the last of the three points.
+        static constexpr double kShares[] = {1, 0.6, 0.35, 0.2, 0.1, 0.05};
+        constexpr double kMostPlaces = 48;
         Circle c;
-        for (const double share : {1.0, 0.6, 0.35, 0.2, 0.1, 0.05}) {
+        for (const double share : kShares) {
             const int span = std::max(kFewestOnArc - 1, static_cast<int>(share * (n - 1)));
             if (span > n - 1) continue;
-            const int places = static_cast<int>(std::min(48.0, 3 / share));
+            const int places = static_cast<int>(std::min(kMostPlaces, 3 / share));
             for (int p = 0; p < places; ++p) {
                 const int i = places > 1 ? (n - 1 - span) * p / (places - 1) : 0;
                 if (through(i, i + span / 2, i + span, c)) try_circle(c);
@@ -180,7 +194,9 @@ class CircleFinder final : public FeatureFinder {
             longest = std::max(longest, ++rows_.back()[2]);
         }
         for (const auto& row : rows_) {
-            const int cut = row[2] < 0.15 * longest ? row[2] : std::max(2, static_cast<int>(0.06 * row[2]));
+            const int cut = row[2] < kCircleShortRow * longest
+                                ? row[2]
+                                : std::max(2, static_cast<int>(kCircleRowEnd * row[2]));
             const bool ends_before = row[0] == 0, ends_after = row[1] == n - 1;
             if (cut == row[2]) {
                 for (int i = row[0]; i <= row[1]; ++i) keep_[i] = 0;
@@ -203,7 +219,8 @@ class CircleFinder final : public FeatureFinder {
             // The set is chosen while it still moves much; then it stays, so that the end is a true minimum.
             if (round < 12) {
                 scratch_.clear();
-                const double first = std::max(6 * contour_noise_mm(points_.x, points_.z, scratch_), 1e-6);
+                const double first =
+                    std::max(6 * contour_noise_mm(points_.x, points_.z, scratch_), kCircleLeastTolerance_mm);
                 if (round == 0) gate = first;
                 scratch_.clear();
                 for (int i = 0; i < n; ++i) {
@@ -213,7 +230,8 @@ class CircleFinder final : public FeatureFinder {
                 if (scratch_.size() < kFewestOnArc) break;
                 const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
                 std::nth_element(scratch_.begin(), middle, scratch_.end());
-                gate = std::max(std::min(3.5 * kMadToSigma * *middle * 1.05, first), 1e-9);
+                gate = std::max(std::min(kCircleGate * kMadToSigma * *middle * kCircleGateMore, first),
+                                kCircleLeastGate_mm);
                 for (int i = 0; i < n; ++i)
                     keep_[i] = std::abs(circle.distance(points_.x[i], points_.z[i])) <= gate;
                 trim_rows();
@@ -238,12 +256,12 @@ class CircleFinder final : public FeatureFinder {
             if (known_ > 0) normal(2, 2) = 1;
             const Eigen::Vector3d step = -normal.ldlt().solve(gradient);
             if (!step.allFinite()) break;
-            const double most = 0.3 * circle.radius;
+            const double most = kCircleStep * circle.radius;
             const double size = step.norm();
             const double scale = size > most ? most / size : 1;
             circle.centre += scale * step.head<2>();
             if (known_ <= 0) circle.radius += scale * step.z();
-            if (round >= 12 && size < 1e-9 * (1 + circle.radius)) break;
+            if (round >= 12 && size < kCircleSettled * (1 + circle.radius)) break;
         }
         feature.points_used = used;
         if (used < kFewestOnArc || !circle.centre.allFinite()) {
@@ -265,8 +283,8 @@ class CircleFinder final : public FeatureFinder {
         eigen.computeDirect(feature.covariance_mm2);
         const double worst = std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
         double arc = 0;
-        longest_run(circle, std::max(gate, 1e-9), arc);
-        if (arc < minimum_arc_ || !(worst < 0.1 * circle.radius)) {
+        longest_run(circle, std::max(gate, kCircleLeastGate_mm), arc);
+        if (arc < minimum_arc_ || !(worst < kCircleUncertain * circle.radius)) {
             feature.status = FeatureStatus::ill_conditioned;
             feature.message =
                 Text("the arc of {:.0f} degrees is too short: the centre is uncertain by {:.2g} mm",

@@ -67,7 +67,11 @@ constexpr double kEndFaded = 0.6;          // of the intensity before the end
 constexpr double kEndLongStep = 1.5;       // pitches
 constexpr std::size_t kEndLastPoints = 3;
 constexpr int kEndDoubtfulLines = 6;
-constexpr double kEndBeside = 3;  // pitches
+constexpr double kEndBeside = 3;              // pitches
+constexpr double kEndLeastVariance = 1e-300;  // of a curvature: divided by
+constexpr double kEndSingular = 1e-9;         // reciprocal condition
+constexpr double kEndMisfit = 2.5;            // sigma of the last points' mean
+constexpr double kEndFull = 0.75;  // of the intensities' upper quartile: as bright as before the end
 
 // A contour near its end: d = b0 + b1 s + b2 s^2 about `centre`; b2 = 0 for a line.
 struct EndCurve {
@@ -223,7 +227,7 @@ class ContourEnd final : public FeatureFinder {
         }
         if (trial.used < kEndPointsKept * line.used || median_residual(trial) > line_median) return false;
         const double variance = trial.widening * trial.sigma_mm * trial.sigma_mm * trial.cofactor(2, 2);
-        const double t2 = trial.b[2] * trial.b[2] / std::max(variance, 1e-300);
+        const double t2 = trial.b[2] * trial.b[2] / std::max(variance, kEndLeastVariance);
         if (!(t2 > kEndAkaike)) return false;
         trial.cubic_misfit = cubic(trial);
         // The line of the same points is b = 0, for the chord is their line.
@@ -254,7 +258,7 @@ class ContourEnd final : public FeatureFinder {
         }
         const int freedom = curve.used - 4;
         const Eigen::LDLT<Eigen::Matrix4d> solver(normal);
-        if (freedom < 2 || !(solver.rcond() > 1e-9)) return Eigen::Vector4d::Zero();
+        if (freedom < 2 || !(solver.rcond() > kEndSingular)) return Eigen::Vector4d::Zero();
         const Eigen::Vector4d b = solver.solve(right);
         const double widening = freedom > 4 ? double(freedom) / (freedom - 2) : 2.0;
         const double variance = widening * std::max(rss - b.dot(right), 0.0) / freedom *
@@ -301,7 +305,7 @@ class ContourEnd final : public FeatureFinder {
                 right += curve.normal().dot(point(i) - mean) * r;
             }
         const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
-        if (!(solver.rcond() > 1e-9)) return false;
+        if (!(solver.rcond() > kEndSingular)) return false;
         const Eigen::Vector3d unit(1, 1 / size, 1 / (size * size));
         curve.b = unit.asDiagonal() * Eigen::Vector3d(solver.solve(right));
         curve.cofactor = unit.asDiagonal() * Eigen::Matrix3d(solver.solve(Eigen::Matrix3d::Identity())) *
@@ -353,7 +357,7 @@ class ContourEnd final : public FeatureFinder {
         const std::size_t count = std::min(fit_x_.size(), kEndLastPoints);
         double mean = 0;
         for (std::size_t i = 0; i < count; ++i) mean += curve.residual(point(i)) / double(count);
-        if (!(std::abs(mean) > 2.5 * curve.sigma_mm / std::sqrt(double(count)))) return 0;
+        if (!(std::abs(mean) > kEndMisfit * curve.sigma_mm / std::sqrt(double(count)))) return 0;
         return std::max(std::abs(mean), std::abs(curve.residual(point(0))));
     }
 
@@ -426,7 +430,7 @@ class ContourEnd final : public FeatureFinder {
             ss += arc * arc;
             v += intensity_[i];
             sv += arc * intensity_[i];
-            if (i >= 2 && intensity_[i] > 0.75 * full) break;
+            if (i >= 2 && intensity_[i] > kEndFull * full) break;
         }
         const double rise = (n * sv - s * v) / (n * ss - s * s);
         return rise > 0 && std::isfinite(rise) ? std::min(at_end / rise, fit_length_) : 0;

@@ -65,9 +65,11 @@ std::vector<ParameterInfo> corner_parameters() {
 
 enum class CornerOf { only, highest, lowest, leftmost, rightmost, sharpest };
 
-constexpr double kCornerRival = 1.0 / 3;  // of the sharpest turn: a weaker bend is no rival
-constexpr double kCornerSharper = 1.25;   // of the next turn
-constexpr double kCornerApart = 0.1;      // of their distance: what tells two corners apart by x or z
+constexpr double kCornerRival = 1.0 / 3;     // of the sharpest turn: a weaker bend is no rival
+constexpr double kCornerSharper = 1.25;      // of the next turn
+constexpr double kCornerApart = 0.1;         // of their distance: what tells two corners apart by x or z
+constexpr double kCornerUnknown_mm2 = 1e12;  // variance of a corner that two lines do not tell
+constexpr double kCornerEndless_mm = 1e9;
 constexpr std::size_t kCornersNamed = 4;
 
 class Corner final : public FeatureFinder {
@@ -228,7 +230,7 @@ class Corner final : public FeatureFinder {
                 feature.status = FeatureStatus::ill_conditioned;
                 feature.message = Text("the two lines meet at {:.1f} degrees only",
                                        deg_from_rad(std::asin(std::abs(cross))));
-                feature.covariance_mm2 = Eigen::Matrix2d::Identity() * 1e12;
+                feature.covariance_mm2 = Eigen::Matrix2d::Identity() * kCornerUnknown_mm2;
                 return feature;
             }
             normals << -a.direction.y(), a.direction.x(), -b.direction.y(), b.direction.x();
@@ -239,7 +241,7 @@ class Corner final : public FeatureFinder {
             const auto near = [&](std::size_t i) {
                 return std::hypot(points_.x[i] - p.x(), points_.z[i] - p.y());
             };
-            const double longest = settings_.side_length > 0 ? settings_.side_length : 1e9;
+            const double longest = settings_.side_length > 0 ? settings_.side_length : kCornerEndless_mm;
             if (split > 0) {
                 // Divide at the point nearest to the intersection.
                 std::size_t nearest = first;

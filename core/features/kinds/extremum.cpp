@@ -31,6 +31,11 @@ constexpr double kRidgeNoise = 1.4;  // times the contour's noise, and
 constexpr double kRidgeSag = 0.045;  // of the parabola's own sag: a misfit beyond both is an edge
 constexpr double kLeastSide = 0.15;  // of the fitted length that must be seen on either side
 
+constexpr double kApexLeastGate_mm = 1e-9;
+constexpr double kApexLeastVariance = 1e-300;  // of a bow: divided by
+constexpr double kApexUnknown_mm2 = 1e12;      // variance where the contour is flat
+constexpr double kApexSingular = 1e-12;        // reciprocal condition
+
 enum class Which { highest, lowest, leftmost, rightmost };
 constexpr int kFewestForApex = 6;
 
@@ -81,13 +86,13 @@ class Extremum final : public FeatureFinder {
         const double a = fit.coefficient[0], b = fit.coefficient[1], c = fit.coefficient[2];
         const Eigen::Matrix3d covariance = fit.sigma2 * fit.normal.ldlt().solve(Eigen::Matrix3d::Identity());
         const double vertex = fit.bent ? -b / (2 * a) : 0;
-        const double bow = std::abs(a) / std::sqrt(std::max(covariance(0, 0), 1e-300));
+        const double bow = std::abs(a) / std::sqrt(std::max(covariance(0, 0), kApexLeastVariance));
         if (bow < kLeastBow) {
             feature.status = FeatureStatus::ill_conditioned;
             feature.message = "the contour is flat there: no bow is seen above the noise";
             feature.point_mm =
                 upright ? Eigen::Vector2d(fit.centre, fit.origin) : Eigen::Vector2d(fit.origin, fit.centre);
-            feature.covariance_mm2 = Eigen::Matrix2d::Identity() * 1e12;
+            feature.covariance_mm2 = Eigen::Matrix2d::Identity() * kApexUnknown_mm2;
             return feature;
         }
         // A ridge is no summit: the parabola's misfit stands out against both the noise and its own bow.
@@ -188,7 +193,7 @@ class Extremum final : public FeatureFinder {
             if (fit.used < kFewestForApex) return;
             fit.coefficient = fit.normal.ldlt().solve(right);
             fit.sigma2 = std::max(0.0, hh - right.dot(fit.coefficient)) / (fit.used - 3);
-            gate = kApexGate * std::sqrt(fit.sigma2) + 1e-9;
+            gate = kApexGate * std::sqrt(fit.sigma2) + kApexLeastGate_mm;
         }
     }
 
@@ -200,7 +205,7 @@ class Extremum final : public FeatureFinder {
         using Vector5 = Eigen::Matrix<double, 5, 1>;
         constexpr int kFewest = 9;
         constexpr double kFarthest = 0.25;  // in u
-        const double gate = kApexGate * std::sqrt(fit.sigma2) + 1e-9;
+        const double gate = kApexGate * std::sqrt(fit.sigma2) + kApexLeastGate_mm;
         Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
         Vector5 right = Vector5::Zero();
         double hh = 0;
@@ -219,7 +224,7 @@ class Extremum final : public FeatureFinder {
         }
         if (used < kFewest) return Eigen::Vector2d::Zero();
         const Eigen::LDLT<Eigen::Matrix<double, 5, 5>> solver(normal);
-        if (!(solver.rcond() > 1e-12)) return Eigen::Vector2d::Zero();
+        if (!(solver.rcond() > kApexSingular)) return Eigen::Vector2d::Zero();
         const Vector5 c = solver.solve(right);
         const double sigma2 = std::max(0.0, hh - right.dot(c)) / (used - 5);
         const Eigen::Matrix2d full = solver.solve(Eigen::Matrix<double, 5, 2>::Identity()).topRows<2>();

@@ -17,11 +17,17 @@ constexpr double kMostMissing = 0.3;
 constexpr double kPointsAPiece = 3;
 constexpr double kShortPieces = 0.1;  // share of the contour's length
 constexpr double kHeightInNoise = 6;
+constexpr double kNoStep_mm = 1e-7;           // differences below are none
+constexpr double kMiss = 0.1;                 // of a step: no whole multiple
+constexpr double kMostMisses = 0.05;          // of the differences
+constexpr double kLeastTolerance_mm = 0.02;   // of a straight piece
+constexpr double kMedianOfNormal = 0.6745;    // of |normal noise|, in sigma
+constexpr double kLeastHas = 1e-9;            // of what is divided by
 const double kUniform = 1 / std::sqrt(12.0);  // sigma of what lies anywhere within a step of 1
 
 // The step that nearly all differences are whole multiples of; 0: there is none.
 double depth_step(std::vector<double> differences) {
-    std::erase_if(differences, [](double d) { return d < 1e-7; });
+    std::erase_if(differences, [](double d) { return d < kNoStep_mm; });
     if (differences.size() < kFewestNeighbours) return 0;
     std::sort(differences.begin(), differences.end());
     // The smallest ones are one step, unless there is none: then they are anything.
@@ -30,9 +36,9 @@ double depth_step(std::vector<double> differences) {
     for (const double d : differences) {
         const double steps = d / step;
         if (steps > 20) break;  // far apart they tell nothing about the step
-        misses += std::abs(steps - std::round(steps)) > 0.1;
+        misses += std::abs(steps - std::round(steps)) > kMiss;
     }
-    return misses < 0.05 * static_cast<double>(differences.size()) ? step : 0;
+    return misses < kMostMisses * static_cast<double>(differences.size()) ? step : 0;
 }
 
 struct Piece {
@@ -42,7 +48,7 @@ struct Piece {
 // kink, a jump or a point of noise two neighbours are a piece), and how much it stands up.
 Piece pieces_of(const std::vector<double>& x, const std::vector<double>& z, double noise_mm) {
     std::vector<int> kept;
-    reduce_contour(x, z, std::max(4 * noise_mm, 0.02), kept);
+    reduce_contour(x, z, std::max(4 * noise_mm, kLeastTolerance_mm), kept);
     Piece piece;
     std::vector<double> lengths;
     double whole = 0, below = 0;
@@ -116,7 +122,7 @@ Expected<SensorNumbers> sensor_numbers(const Profile& profile) {
                            "give a profile of the contour, or of a flat sheet at its distance");
     SensorNumbers numbers;
     numbers.pitch_mm = median(spacing);
-    numbers.noise_mm = median(bend) / 0.6745 / std::sqrt(6.0);
+    numbers.noise_mm = median(bend) / kMedianOfNormal / std::sqrt(6.0);
     numbers.depth_step_mm = depth_step(std::move(step));
     // Beside the part there is nothing to return.
     numbers.missing_share = 1 - static_cast<double>(returns) / static_cast<double>(last - first + 1);
@@ -205,7 +211,8 @@ Expected<ResolutionCheck> check_resolution(const Profile& profile, const Feature
     } else if (shown->name == "depth_step") {
         check.cure = "choose a finer depth in the sensor's settings, or a sensor of a smaller range";
     } else if (shown->name == "pitch" || shown->name == "points") {
-        check.reach = shown->at_least ? shown->needs / std::max(shown->has, 1e-9) : shown->has / shown->needs;
+        check.reach =
+            shown->at_least ? shown->needs / std::max(shown->has, kLeastHas) : shown->has / shown->needs;
         check.cure =
             Text("let the sensor stand {:.1f} times nearer, or use one of a narrower field", check.reach);
     } else {

@@ -21,6 +21,23 @@ inline constexpr double kHotPixelWidth = 1.1;  // px; a single bright pixel has 
 inline constexpr double kSharpness = 0.3;  // (width at 1/2 - width at 3/4)/width at 1/2; 0.356 of a Gaussian
 inline constexpr double kMeanDifference = 1.128;  // of two Gaussian samples, in standard deviations
 
+inline constexpr double kNarrowAt = 0.75;  // of the height: down to where the lobe narrows from its half
+// Of the height: a background that moved more is measured by another outline; one that moved less stands.
+inline constexpr double kMovedMuch = 0.01, kStands = 0.03;
+inline constexpr double kOnBackground = 0.1;     // of the height: a flank that ends so low shows no valley
+inline constexpr double kDeepValley = 0.25;      // of what the top stands above it
+inline constexpr double kBackgroundStep = 0.25;  // of what the top stands above the lower of its two sides
+// Narrowings from half height to the end of a flank. Half the narrowing from 1/2 to 3/4 of the height is 0.42 standard
+// deviations of a Gaussian; five times that outside the half-height point is 3.3 standard deviations from the middle,
+// and on the flanks of a clipped one as far down.
+inline constexpr double kFlankEnds = 2.5;
+inline constexpr double kUnbounded = 1e9;  // px, of a reach
+// The window of the centre of gravity beyond half the width: narrowings, and px.
+inline constexpr double kWindowNarrowings = 2.15, kWindowMore = 0.25;
+inline constexpr double kMostMove = 0.25;                             // of the width, in one of its steps
+inline constexpr double kLeastMove = 0.02;                            // px; the next step would be below 1e-3
+inline constexpr double kLeastSharp = 0.02, kHotPixelStrength = 0.1;  // of a peak's strength that is left
+
 // One image line. Grey values at stride `step`.
 template <class Pixel>
 struct Line {
@@ -166,11 +183,11 @@ class LobeFinder {
             const double before = lobe.base;
             find_background(lobe, noise);
             const double moved = std::abs(lobe.base - before);
-            if (moved > 0.01 * lobe.height()) {
+            if (moved > kMovedMuch * lobe.height()) {
                 extend(lobe);
                 outline(lobe);
             }
-            if (moved < 0.03 * lobe.height()) break;
+            if (moved < kStands * lobe.height()) break;
         }
         lobe.sharpness = lobe.width > kBroad ? sharpness(lobe) : lobe.narrowing / lobe.width;
         lobe.truncated = lobe.left == 0 || lobe.right == line_.size - 1;
@@ -180,8 +197,9 @@ class LobeFinder {
     // stripe does, (1 - (d/R)^2)^2; the window stands at the mean itself, which Newton steps find. A hard
     // cut would add up to 0.05 px of bias that follows the phase of the pixel grid.
     double centre_of_gravity(const Lobe& lobe) const {
-        const double reach = std::max(std::min(0.5 * lobe.width + 2.15 * lobe.narrowing + 0.25, lobe.reach),
-                                      0.5 * lobe.width + 0.5);
+        const double reach = std::max(
+            std::min(0.5 * lobe.width + kWindowNarrowings * lobe.narrowing + kWindowMore, lobe.reach),
+            0.5 * lobe.width + 0.5);
         int first = std::max(0, static_cast<int>(std::ceil(lobe.middle - reach)) - 1);
         int last = std::min(line_.size - 1, static_cast<int>(std::floor(lobe.middle + reach)) + 1);
         if (lobe.cut > 0) {
@@ -229,16 +247,21 @@ class LobeFinder {
             const double pull = double(force[0]) + force[1] + force[2] + force[3];
             if (!(stiff > 0)) return lobe.middle;
             const double move = reach * pull / stiff;
-            x += std::clamp(move, -0.25 * lobe.width, 0.25 * lobe.width);
-            if (std::abs(move) < 0.02) break;  // the next step would be below 1e-3
+            x += std::clamp(move, -kMostMove * lobe.width, kMostMove * lobe.width);
+            if (std::abs(move) < kLeastMove) break;
         }
         return std::abs(x - lobe.middle) <= 0.5 * lobe.width ? x : lobe.middle;
     }
 
     // Weighted parabola through the logarithm; falls back to the middle of the half-height points.
     double gaussian(const Lobe& lobe) const {
-        const double scale = std::max(lobe.height(), 1e-9);
-        const double floor = (lobe.flat ? 0.1 : 0.2) * scale;
+        constexpr double kLeastHeight = 1e-9;
+        // Of the height: where the pixels of a lobe end, and the darkest that count.
+        constexpr double kFlatFloor = 0.1, kFloor = 0.2, kDarkest = 0.02;
+        constexpr double kMostLog = 6;  // of the model: more than the top by e^6 is none
+        constexpr double kSingular = 1e-12;
+        const double scale = std::max(lobe.height(), kLeastHeight);
+        const double floor = (lobe.flat ? kFlatFloor : kFloor) * scale;
         const double centre = lobe.middle;
         int left = lobe.left, right = lobe.right;
         while (left > 0 && line_[left - 1] - lobe.base_at(left - 1) > floor) --left;
@@ -252,9 +275,9 @@ class LobeFinder {
             for (int i = left; i <= right; ++i) {
                 if (lobe.flat && line_[i] >= lobe.top) continue;
                 const double y = (line_[i] - lobe.base_at(i)) / scale;
-                if (y < 0.02) continue;
+                if (y < kDarkest) continue;
                 const double x = (i - centre) / unit;
-                const double model = round == 0 ? y : std::exp(std::min(a + b * x + c * x * x, 6.0));
+                const double model = round == 0 ? y : std::exp(std::min(a + b * x + c * x * x, kMostLog));
                 const double w = model * model, l = std::log(y);
                 double p = w;
                 for (int k = 0; k < 5; ++k, p *= x) {
@@ -267,7 +290,7 @@ class LobeFinder {
             // Normal equations of the parabola by Cramer's rule.
             const double det = s[0] * (s[2] * s[4] - s[3] * s[3]) - s[1] * (s[1] * s[4] - s[2] * s[3]) +
                                s[2] * (s[1] * s[3] - s[2] * s[2]);
-            if (!(std::abs(det) > 1e-12 * s[0] * s[0] * s[0])) return found;
+            if (!(std::abs(det) > kSingular * s[0] * s[0] * s[0])) return found;
             a = (t[0] * (s[2] * s[4] - s[3] * s[3]) - s[1] * (t[1] * s[4] - t[2] * s[3]) +
                  s[2] * (t[1] * s[3] - t[2] * s[2])) /
                 det;
@@ -287,6 +310,7 @@ class LobeFinder {
 
     // Zero of the first derivative of the smoothed line, by safeguarded Newton steps.
     double steger(const Lobe& lobe) const {
+        constexpr double kSettled_px = 1e-4;
         const double sigma = std::max(options_.steger_sigma_px, 0.5 * lobe.width / std::sqrt(3.0));
         const int reach = static_cast<int>(std::ceil(4 * sigma));
         double low = lobe.half_left, high = lobe.half_right, x = lobe.middle;
@@ -311,7 +335,7 @@ class LobeFinder {
             if (!(next > low && next < high)) next = 0.5 * (low + high);
             const double moved = std::abs(next - x);
             x = next;
-            if (moved < 1e-4) break;
+            if (moved < kSettled_px) break;
         }
         return x;
     }
@@ -351,7 +375,7 @@ class LobeFinder {
         lobe.half_right = crossing(line_, lobe.right, 1, half);
         lobe.width = lobe.half_right - lobe.half_left;
         lobe.middle = 0.5 * (lobe.half_left + lobe.half_right);
-        lobe.narrowing = std::max(0.0, lobe.width - width_at(lobe, 0.75, lobe.top));
+        lobe.narrowing = std::max(0.0, lobe.width - width_at(lobe, kNarrowAt, lobe.top));
     }
 
     // Light beyond one flank (`edge` its outermost pixel at half height). Where it rises again before the
@@ -361,7 +385,7 @@ class LobeFinder {
                       double& reach) const {
         const bool found = foot_level(line_, edge + step * out, step, level);
         // Where the flank ends on the background there is no valley to look for.
-        if (found && level - lobe.base < std::min(0.1 * lobe.height(), 2 * noise)) return true;
+        if (found && level - lobe.base < std::min(kOnBackground * lobe.height(), 2 * noise)) return true;
         int valley = edge, lowest = line_[edge];
         for (int k = 1; k <= out + kFootPixels / 2; ++k) {
             const int i = edge + step * k;
@@ -371,7 +395,7 @@ class LobeFinder {
                 valley = i;
             }
         }
-        if (found && level - lowest > std::max(0.25 * (lobe.top - lowest), kValleySigmas * noise)) {
+        if (found && level - lowest > std::max(kDeepValley * (lobe.top - lowest), kValleySigmas * noise)) {
             level = lowest;
             reach = std::min(reach, std::abs(valley - lobe.middle));
         }
@@ -379,12 +403,9 @@ class LobeFinder {
     }
 
     void find_background(Lobe& lobe, double noise) const {
-        // Half the narrowing from 1/2 to 3/4 of the height is 0.42 standard deviations of a Gaussian; five
-        // times that outside the half-height point is 3.3 standard deviations from the middle, and on the
-        // flanks of a clipped one as far down.
-        const int out = static_cast<int>(std::ceil(2.5 * lobe.narrowing)) + 1;
+        const int out = static_cast<int>(std::ceil(kFlankEnds * lobe.narrowing)) + 1;
         double low_left = 0, low_right = 0;
-        lobe.reach = 1e9;
+        lobe.reach = kUnbounded;
         const bool has_left = beyond_flank(lobe, lobe.left, -1, out, noise, low_left, lobe.reach);
         const bool has_right = beyond_flank(lobe, lobe.right, 1, out, noise, low_right, lobe.reach);
         if (!has_left && !has_right) low_left = low_right = lobe.base;
@@ -392,7 +413,7 @@ class LobeFinder {
         if (!has_right) low_right = low_left;
         const double low = std::min({low_left, low_right, static_cast<double>(lobe.top)});
         const double high = std::min(std::max(low_left, low_right), static_cast<double>(lobe.top));
-        if (high - low <= 0.25 * (lobe.top - low)) {
+        if (high - low <= kBackgroundStep * (lobe.top - low)) {
             // Light that varies evenly across the stripe.
             lobe.base = 0.5 * (low + high);
             lobe.slope = has_left && has_right && lobe.reach > line_.size
@@ -401,15 +422,17 @@ class LobeFinder {
             lobe.cut = 0;
         } else {
             // A step of the background, or another peak on one side: only what stands above both counts.
+            constexpr double kAboveBoth = 0.15;  // of the height
             lobe.base = high;
             lobe.slope = 0;
-            lobe.cut = 0.15 * (lobe.top - high);
+            lobe.cut = kAboveBoth * (lobe.top - high);
         }
     }
 
     // Pixels of the top value. Some sensors clip below full scale: a plateau of one value over most of the
     // width.
     void find_top(Lobe& lobe) const {
+        constexpr double kClipsFrom = 0.7;  // of full scale
         lobe.top_first = lobe.top_last = -1;
         int run = 0, longest = 0;
         for (int i = lobe.left; i <= lobe.right; ++i) {
@@ -423,7 +446,7 @@ class LobeFinder {
         }
         lobe.flat = lobe.top >= full_scale_ || longest >= 3;
         lobe.clipped = lobe.top >= full_scale_ || (longest >= 4 && 2 * longest >= lobe.right - lobe.left &&
-                                                   lobe.top > 0.7 * full_scale_);
+                                                   lobe.top > kClipsFrom * full_scale_);
     }
 
     // Outermost width at a share of the height from background to `top`.
@@ -443,7 +466,7 @@ class LobeFinder {
         double sum = 0;
         for (int i = lobe.left + quarter; i <= lobe.right - quarter; ++i) sum += line_[i];
         const double level = sum / (lobe.right - lobe.left - 2 * quarter + 1);
-        return std::max(0.0, width_at(lobe, 0.5, level) - width_at(lobe, 0.75, level)) / lobe.width;
+        return std::max(0.0, width_at(lobe, 0.5, level) - width_at(lobe, kNarrowAt, level)) / lobe.width;
     }
 
     // A narrow stripe on a bright square: the square reaches half height too. Its level, the median of the
@@ -451,6 +474,7 @@ class LobeFinder {
     // speckle.
     bool raise_from_pedestal(Lobe& lobe) const {
         constexpr int kSamples = 64;
+        constexpr double kNarrowCore = 0.25;  // of the square
         for (int round = 0; round < 2; ++round) {
             const int wide = lobe.right - lobe.left + 1;
             if (wide <= 10 || lobe.height() < 4) break;
@@ -464,7 +488,7 @@ class LobeFinder {
             walk(line_, lobe.top_first, -1, half, lobe.top, line_.size, left);
             walk(line_, lobe.top_last, 1, half, lobe.top, line_.size, right);
             const double core = crossing(line_, right, 1, half) - crossing(line_, left, -1, half);
-            if (core < 2 || core > 0.25 * wide) break;
+            if (core < 2 || core > kNarrowCore * wide) break;
             lobe.left = left;
             lobe.right = right;
             lobe.base = level;

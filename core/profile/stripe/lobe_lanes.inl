@@ -118,7 +118,7 @@ struct Lanes {
     }
 
     SEAMWRIGHT_INLINE void outline(const Ints& active) {
-        const Reals half = 0.5f * (top + base), upper = base + 0.75f * (top - base);
+        const Reals half = 0.5f * (top + base), upper = base + static_cast<float>(kNarrowAt) * (top - base);
         Reals from, to;
         crossing(left, -1, half, from);
         crossing(right, 1, half, to);
@@ -158,7 +158,8 @@ struct Lanes {
             high = outside ? high : most(high, value);
         }
         level = (sum - low - high) / static_cast<float>(kFootPixels - 2);
-        const Ints valley_asked = asked & (level - base >= least(0.1f * (top - base), 2.0f * noise));
+        const Ints valley_asked =
+            asked & (level - base >= least(static_cast<float>(kOnBackground) * (top - base), 2.0f * noise));
         if (!any(valley_asked)) return;
         const Ints valley_end = edge + Step * (out + kFootPixels / 2);
         Reals bottom = pick(edge);
@@ -172,22 +173,23 @@ struct Lanes {
             valley = deeper ? whole(r) : valley;
         }
         const Ints is_valley =
-            valley_asked &
-            (level - bottom > most(0.25f * (top - bottom), static_cast<float>(kValleySigmas) * noise));
+            valley_asked & (level - bottom > most(static_cast<float>(kDeepValley) * (top - bottom),
+                                                  static_cast<float>(kValleySigmas) * noise));
         level = is_valley ? bottom : level;
         reach = is_valley ? least(reach, magnitude(to_real(valley) - middle)) : reach;
     }
 
     SEAMWRIGHT_INLINE void find_background(const Ints& active) {
-        const Reals far = 2.5f * narrowing;
+        const Reals far = static_cast<float>(kFlankEnds) * narrowing;
         const Ints down = to_row(far), out = down + 1 - (to_real(down) < far);
-        reach = active ? real(1e9f) : reach;
+        reach = active ? real(static_cast<float>(kUnbounded)) : reach;
         Reals low_left, low_right;
         beyond_flank<-1>(active, left, out, low_left);
         beyond_flank<1>(active, right, out, low_right);
         const Reals low = least(least(low_left, low_right), top);
         const Reals high = least(most(low_left, low_right), top);
-        careful |= active & (high - low > 0.25f * (top - low));  // a step: only what stands above both counts
+        careful |= active & (high - low > static_cast<float>(kBackgroundStep) *
+                                              (top - low));  // a step: only what stands above both counts
         base = active ? 0.5f * (low + high) : base;
         const Reals sloping = (low_right - low_left) / to_real(right - left + 2 * out + (kFootPixels - 1));
         slope = active ? (reach > 1e6f ? sloping : Reals{}) : slope;
@@ -195,7 +197,10 @@ struct Lanes {
 
     SEAMWRIGHT_INLINE void centre_of_gravity(const Ints& active, Reals& position) {
         const Reals half_width = 0.5f * width;
-        const Reals radius = most(least(half_width + 2.15f * narrowing + 0.25f, reach), half_width + 0.5f);
+        const Reals radius = most(least(half_width + static_cast<float>(kWindowNarrowings) * narrowing +
+                                            static_cast<float>(kWindowMore),
+                                        reach),
+                                  half_width + 0.5f);
         careful |= active & ((middle - radius < 1.0f) | (middle + radius > to_real(own_rows) - 2.0f));
         Ints moving = active & ~careful;
         position = middle;
@@ -226,9 +231,9 @@ struct Lanes {
             position = lost ? middle : position;
             moving &= ~lost;
             const Reals move = radius * force / stiffness;
-            const Reals most_move = 0.25f * width;
+            const Reals most_move = static_cast<float>(kMostMove) * width;
             position = moving ? position + least(most(move, -most_move), most_move) : position;
-            moving &= magnitude(move) >= 0.02f;
+            moving &= magnitude(move) >= static_cast<float>(kLeastMove);
             if (!any(moving)) break;
         }
         position = magnitude(position - middle) <= half_width ? position : middle;
@@ -246,7 +251,7 @@ SEAMWRIGHT_INLINE void measure_lanes(LobeGroup& group) {
     lanes.base = loaded<Reals>(group.background);
     lanes.careful = whole(0);
     lanes.slope = lanes.half_left = lanes.half_right = lanes.narrowing = Reals{};
-    lanes.reach = real(1e9f);
+    lanes.reach = real(static_cast<float>(kUnbounded));
     const Ints all = whole(-1);
 
     // The highest pixel of the run and its stretch at half height.
@@ -292,7 +297,7 @@ SEAMWRIGHT_INLINE void measure_lanes(LobeGroup& group) {
         lanes.find_background(active);
         active &= ~lanes.careful;
         const Reals moved = magnitude(lanes.base - before), height = lanes.top - lanes.base;
-        const Ints changed = active & (moved > 0.01f * height);
+        const Ints changed = active & (moved > static_cast<float>(kMovedMuch) * height);
         if (any(changed)) {
             Ints high, ignored_tops = whole(0), ignored_last = whole(0);
             const Reals level = 0.5f * (lanes.top + lanes.base);
@@ -303,7 +308,7 @@ SEAMWRIGHT_INLINE void measure_lanes(LobeGroup& group) {
             lanes.careful |= changed & ((lanes.left < 1) | (lanes.right + 2 > lanes.own_rows));
             lanes.outline(changed);
         }
-        active &= moved >= 0.03f * height;
+        active &= moved >= static_cast<float>(kStands) * height;
     }
     lanes.careful |= stretched & (lanes.width > static_cast<float>(kBroad));
 
@@ -332,8 +337,10 @@ SEAMWRIGHT_INLINE void measure_lanes(LobeGroup& group) {
         most(variation - path - static_cast<float>(kMeanDifference) * lanes.noise * (pixels - 1.0f), Reals{});
     const Reals sharp = lanes.narrowing / (static_cast<float>(kSharpness) * lanes.width);
     Reals strength = energy * height * (0.5f * height) / (0.5f * height + excess);
-    strength *= least(most(sharp, real(0.02f)), real(1.0f));
-    strength = lanes.width < static_cast<float>(kHotPixelWidth) ? 0.1f * strength : strength;
+    strength *= least(most(sharp, real(static_cast<float>(kLeastSharp))), real(1.0f));
+    strength = lanes.width < static_cast<float>(kHotPixelWidth)
+                   ? static_cast<float>(kHotPixelStrength) * strength
+                   : strength;
 
     const Reals least_energy = group.least_sigmas * lanes.noise;
     Ints peak = measured & ~lanes.careful & (height >= loaded<Reals>(group.least_height));

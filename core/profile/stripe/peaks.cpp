@@ -14,8 +14,13 @@ namespace seamwright {
 namespace detail {
 namespace {
 
-constexpr double kPixelSigmas = 4.0;   // candidate pixel
-constexpr double kPeakSigmas = 7.0;    // sum over the width of a peak, in its own standard deviations
+constexpr double kPixelSigmas = 4.0;  // candidate pixel
+constexpr double kPeakSigmas = 7.0;   // sum over the width of a peak, in its own standard deviations
+constexpr double kSumMargin = 0.75;   // of that sum, for a background that is darker than the tile's
+constexpr double kPeakHeight = 0.75;  // of a candidate pixel's: over the peak's own background
+// What a candidate pixel has at least: of full scale, and grey values.
+constexpr double kFloorShare = 1 / 256.0, kFloorGrey = 2;
+constexpr double kWidest_px = 1e6;
 constexpr double kFrameShare = 0.001;  // of the strength that stripes have in the frame
 
 // Keeps the K strongest peaks of each line in order.
@@ -97,7 +102,7 @@ struct Extraction {
         while (end < pixels.size && end - run.end < 4 && static_cast<float>(pixels[end]) >= half) ++end;
         float energy = 0;
         for (int i = begin; i < end; ++i) energy += static_cast<float>(pixels[i]) - base;
-        const float needed = static_cast<float>(0.75 * kPeakSigmas) * scan.noise[tile];
+        const float needed = static_cast<float>(kSumMargin * kPeakSigmas) * scan.noise[tile];
         return energy < 0 || energy * energy < needed * needed * static_cast<float>(end - begin);
     }
 
@@ -248,7 +253,9 @@ struct Extraction {
                    group.half_right[k] - group.half_left[k], 0);
     }
 
-    double least_height(float noise) const { return rule.of(noise) * (options.threshold > 0 ? 1.0 : 0.75); }
+    double least_height(float noise) const {
+        return rule.of(noise) * (options.threshold > 0 ? 1.0 : kPeakHeight);
+    }
 
     void keep(const LobeFinder<LineWindow<Pixel>>& finder, int line_number, float noise, Lobe& lobe) {
         finder.measure(lobe, noise);
@@ -271,8 +278,8 @@ struct Extraction {
                 break;
         }
         double strength = energy * lobe.height() * finder.unimodality(lobe, noise);
-        if (!lobe.clipped) strength *= std::clamp(lobe.sharpness / kSharpness, 0.02, 1.0);
-        if (lobe.width < kHotPixelWidth) strength *= 0.1;
+        if (!lobe.clipped) strength *= std::clamp(lobe.sharpness / kSharpness, kLeastSharp, 1.0);
+        if (lobe.width < kHotPixelWidth) strength *= kHotPixelStrength;
         const auto flags = static_cast<std::uint8_t>((lobe.clipped ? StripePeaks::kSaturated : 0) |
                                                      (lobe.truncated ? StripePeaks::kTruncated : 0));
         keeper.add(line_number, static_cast<float>(strength), static_cast<float>(position),
@@ -332,7 +339,8 @@ Expected<void> check(const StripeImage& image, const PeakOptions& options) {
     if (!in(options.threshold, 0, image.full_scale()))
         return input_error("the threshold is out of range", "threshold",
                            Text("give 0 (automatic) to {} grey values", image.full_scale()));
-    if (!in(options.min_width_px, 0, 1e6) || !in(options.max_width_px, options.min_width_px, 1e6))
+    if (!in(options.min_width_px, 0, kWidest_px) ||
+        !in(options.max_width_px, options.min_width_px, kWidest_px))
         return input_error("the widths are out of range", "min_width_px, max_width_px",
                            "give 0 <= min <= max");
     if (!in(options.steger_sigma_px, 0.5, 20))
@@ -362,7 +370,7 @@ Expected<void> find_peaks(const StripeImage& image, const PeakOptions& options, 
     ThresholdRule rule;
     rule.fixed = options.threshold;
     rule.noise_factor = kPixelSigmas;
-    rule.floor = image.full_scale() / 256.0 + 2.0;
+    rule.floor = image.full_scale() * kFloorShare + kFloorGrey;
     measure_background(image, options.scan, options.max_width_px, kernel, work.scan);
     if (image.bytes_per_pixel() == 1) {
         extract<std::uint8_t>(image, options, rule, kernel, work, peaks);
@@ -391,7 +399,8 @@ Expected<ScanLines> guess_scan_lines(const StripeImage& image) {
             if (!peaks.count[i - 1] || !peaks.count[i]) continue;
             // A stripe flatter than 45 degrees moves less than a pixel a line; noise of its position is
             // allowed for.
-            if (std::abs(peaks.position_px[i] - peaks.position_px[i - 1]) < 1.5)
+            constexpr double kFlat_px = 1.5;
+            if (std::abs(peaks.position_px[i] - peaks.position_px[i - 1]) < kFlat_px)
                 ++score[scan == ScanLines::rows];
         }
     }

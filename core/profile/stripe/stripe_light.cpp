@@ -16,8 +16,14 @@ constexpr int kFewest = 8;
 constexpr double kFlooded = 0.6;  // surrounding level of an image without a stripe: washed out, not dark
 constexpr double kWellLit = 0.1;  // of full scale: what a line needs to be measured well
 constexpr double kMoreWithoutStripe = 16, kLessWhereFlooded = 0.06, kMost = 16;
-constexpr double kSameLight = 1.02;  // no other frame would come of it
-constexpr double kNarrowed = 1.15;   // between too dark and too bright: settled
+constexpr double kBrightLines = 0.95, kDarkLines = 0.1;  // shares of the lit lines below their levels
+// By the share of lines that are cut off, how much of the light is tried next.
+constexpr double kAllCut = 0.95, kMostCut = 0.8, kManyCut = 0.4;
+constexpr double kIfAll = 0.08, kIfMost = 0.15, kIfMany = 0.3, kIfSome = 0.5;
+constexpr double kLeastBright = 1e-6;  // of full scale
+constexpr float kSamePlace = 0.5F;     // of the width: two exposures of one stripe
+constexpr double kSameLight = 1.02;    // no other frame would come of it
+constexpr double kNarrowed = 1.15;     // between too dark and too bright: settled
 
 double share_of(const std::vector<float>& sorted, double share) {
     return sorted[std::min(sorted.size() - 1,
@@ -57,9 +63,9 @@ StripeLight stripe_light(const StripePeaks& peaks, int full_scale, const std::ve
     if (levels.empty()) return light;
     std::sort(levels.begin(), levels.end());
     std::sort(widths.begin(), widths.end());
-    light.bright = share_of(levels, 0.95);
+    light.bright = share_of(levels, kBrightLines);
     light.middle = share_of(levels, 0.5);
-    light.dark = share_of(levels, 0.1);
+    light.dark = share_of(levels, kDarkLines);
     light.width_px = share_of(widths, 0.5);
     return light;
 }
@@ -105,8 +111,8 @@ double wanted_light_factor(const StripeLight& light, double surrounding) {
     if (too_few(light)) return surrounding > kFlooded ? kLessWhereFlooded : kMoreWithoutStripe;
     // How far beyond the cut the stripe is cannot be seen; the more lines are cut off, the further.
     if (const double cut = light.saturated_share(); cut > kSaturatedShare)
-        return cut > 0.95 ? 0.08 : cut > 0.8 ? 0.15 : cut > 0.4 ? 0.3 : 0.5;
-    return std::clamp(kTarget / std::max(light.bright, 1e-6), 1 / kMost, kMost);
+        return cut > kAllCut ? kIfAll : cut > kMostCut ? kIfMost : cut > kManyCut ? kIfMany : kIfSome;
+    return std::clamp(kTarget / std::max(light.bright, kLeastBright), 1 / kMost, kMost);
 }
 
 LightSearch::LightSearch(double start, double lowest, double highest)
@@ -179,7 +185,7 @@ int chosen_exposure(std::span<const StripePeaks> exposures, std::span<const std:
         const StripePeaks& brighter = exposures[static_cast<std::size_t>(chosen)];
         const auto at = static_cast<std::size_t>(p.index(line, 0));
         const auto there = static_cast<std::size_t>(brighter.index(line, 0));
-        if (std::abs(p.position_px[at] - brighter.position_px[there]) > 0.5F * p.width_px[at])
+        if (std::abs(p.position_px[at] - brighter.position_px[there]) > kSamePlace * p.width_px[at])
             chosen = static_cast<int>(k);
     }
     return chosen;

@@ -13,10 +13,12 @@
 namespace seamwright::detail {
 namespace {
 
-constexpr int kBatch = 1024;          // runs handed over at once: their pixels are still in the cache
-constexpr int kSampledRows = 4;       // per tile
-constexpr int kDifferenceStep = 2;    // px; neighbours of demosaiced or compressed images are correlated
-constexpr double kSecondLane = 1.04;  // the second smallest of four lanes lies below their mean by that
+constexpr int kBatch = 1024;            // runs handed over at once: their pixels are still in the cache
+constexpr int kSampledRows = 4;         // per tile
+constexpr int kDifferenceStep = 2;      // px; neighbours of demosaiced or compressed images are correlated
+constexpr double kSecondLane = 1.04;    // the second smallest of four lanes lies below their mean by that
+constexpr double kQuantisation = 0.29;  // grey values, 1/sqrt(12): noise of rounding to whole ones
+constexpr float kQuietest = 0.5F;       // of the frame's noise: no tile has less
 constexpr std::size_t kMedianTiles = 500;
 constexpr double kSqrtPi = 1.7724538509055160;
 
@@ -338,10 +340,9 @@ void measure_tiles(const StripeImage& image, bool avx2, StripeScan& work) {
             }
             const int tile = ty * work.tile_columns + tx;
             work.background[tile] = static_cast<float>(sums.grey) / static_cast<float>(kSampledRows * width);
-            // Quantisation to whole grey values is noise of 1/sqrt(12), also where the differences do not
-            // show it.
+            // Quantisation is noise also where the differences do not show it.
             const double measured =
-                std::max(kSecondLane * 0.5 * kSqrtPi * mean_difference(sums, pairs), 0.29);
+                std::max(kSecondLane * 0.5 * kSqrtPi * mean_difference(sums, pairs), kQuantisation);
             work.noise[tile] = static_cast<float>(measured * clamping(work.background[tile] / measured));
         }
     }
@@ -502,7 +503,7 @@ void measure_background(const StripeImage& image, ScanLines scan, double max_wid
     const int reach = static_cast<int>(std::ceil(max_width_px / kTile + 1.0)) / 2 + 1;
     open_map(work.background, work, scan, reach);
     open_map(work.noise, work, scan, reach);
-    const float least_noise = 0.5f * work.frame_noise;
+    const float least_noise = kQuietest * work.frame_noise;
     for (float& noise : work.noise) noise = std::max(noise, least_noise);
 }
 

@@ -20,7 +20,8 @@ Eigen::MatrixXd shared_covariance(const NormalBlocks& normal) {
     const Eigen::VectorXd scale = normal.gg.diagonal()(free).cwiseSqrt().cwiseInverse();
     const SymmetricEigen eigen =
         symmetric_eigen(scale.asDiagonal() * Eigen::MatrixXd(schur(free, free)) * scale.asDiagonal());
-    if (!eigen.converged || !(eigen.values(0) > 1e-14)) return {};
+    constexpr double kSingular = 1e-14;  // of the information scaled to unit diagonal
+    if (!eigen.converged || !(eigen.values(0) > kSingular)) return {};
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(schur.rows(), schur.rows());
     covariance(free, free) = scale.asDiagonal() * eigen.vectors * eigen.values.cwiseInverse().asDiagonal() *
                              eigen.vectors.transpose() * scale.asDiagonal();

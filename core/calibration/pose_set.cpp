@@ -34,9 +34,10 @@ Expected<void> check_ids(const std::vector<std::string>& ids, const std::vector<
 }
 
 Expected<void> check_millimetres(const std::vector<Pose>& poses, const Text& where) {
+    constexpr double kMetresWithin = 10;  // all poses nearer than that to their base look like metres
     double largest = 0;
     for (const auto& pose : poses) largest = std::max(largest, pose.translation().norm());
-    if (largest > 0 && largest < 10)
+    if (largest > 0 && largest < kMetresWithin)
         return input_error(
             Text("no pose is farther than {:.3g} from its base: these look like metres, not millimetres",
                  largest),
@@ -64,13 +65,14 @@ OrientationSpread orientation_spread(const std::vector<Pose>& poses) {
     OrientationSpread spread;
     if (poses.size() < 2) return spread;
     // Mean rotation: fixed point of the averaged rotation vectors, from the first pose.
+    constexpr double kMeanSettled_rad = 1e-9;  // a smaller step of the mean ends it
     Eigen::Matrix3d mean = poses.front().linear();
     for (int iteration = 0; iteration < 20; ++iteration) {
         Eigen::Vector3d sum = Eigen::Vector3d::Zero();
         for (const auto& pose : poses) sum += rotation_log(mean.transpose() * pose.linear());
         sum /= static_cast<double>(poses.size());
         mean = mean * rotation_exp(sum);
-        if (sum.norm() < 1e-9) break;
+        if (sum.norm() < kMeanSettled_rad) break;
     }
     Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
     for (const auto& pose : poses) {
@@ -97,7 +99,7 @@ std::string axis_name(const Eigen::Vector3d& axis) {
     static constexpr const char* names[] = {"X", "Y", "Z"};
     Eigen::Index k = 0;
     const double largest = unit.cwiseAbs().maxCoeff(&k);
-    if (largest > std::cos(rad_from_deg(25))) return names[k];
+    if (largest > std::cos(rad_from_deg(kNearAxis_deg))) return names[k];
     return fmt::format("({:.2f}, {:.2f}, {:.2f})", unit.x(), unit.y(), unit.z());
 }
 

@@ -37,8 +37,11 @@ struct OrientationSpread {
     Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
 };
 OrientationSpread orientation_spread(const std::vector<Pose>& poses);
+// A smaller spread about an axis is no turn about it.
+inline constexpr double kNoSpread_deg = 5;
 
-// "X", "Y", "Z" when `axis` is within 25 degrees of that axis, else "(0.71, 0.00, 0.71)".
+// "X", "Y", "Z" when `axis` is within so many degrees of that axis, else "(0.71, 0.00, 0.71)".
+inline constexpr double kNearAxis_deg = 25;
 std::string axis_name(const Eigen::Vector3d& axis);
 
 }  // namespace seamwright

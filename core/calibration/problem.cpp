@@ -41,7 +41,8 @@ class PoseManifold final : public NoDifference {
     bool Plus(const double* x, const double* delta, double* out) const override {
         const Eigen::Vector3d w(delta[3], delta[4], delta[5]);
         const double angle = w.norm();
-        const double half = angle > 1e-12 ? std::sin(0.5 * angle) / angle : 0.5;
+        constexpr double kNoTurn_rad = 1e-12;  // below, sin(angle / 2) / angle is taken for its limit
+        const double half = angle > kNoTurn_rad ? std::sin(0.5 * angle) / angle : 0.5;
         const Eigen::Quaterniond turn(std::cos(0.5 * angle), half * w.x(), half * w.y(), half * w.z());
         for (int i = 0; i < 3; ++i) out[i] = x[i] + delta[i];
         Eigen::Map<Eigen::Quaterniond>(out + 3) = (turn * turn_of(x)).normalized();
@@ -197,8 +198,10 @@ Solved solve(ceres::Problem& problem, const std::vector<double*>& views, int mos
     }
     options.max_num_iterations = most_iterations;
     options.function_tolerance = tolerance;
-    options.parameter_tolerance = 1e-13;
-    options.gradient_tolerance = 1e-16;
+    // Relative step, and gradient, that end it besides `tolerance`.
+    constexpr double kLeastStep = 1e-13, kLeastGradient = 1e-16;
+    options.parameter_tolerance = kLeastStep;
+    options.gradient_tolerance = kLeastGradient;
     options.max_num_consecutive_invalid_steps = 20;
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;

@@ -48,9 +48,10 @@ template <class T>
 Vector3<T> rotation_vector(const Eigen::Quaternion<T>& q) {
     using std::atan2;
     using std::sqrt;
+    constexpr double kNoSine2 = 1e-20;  // up to that, the limit at no turn
     const T sine2 = q.x() * q.x() + q.y() * q.y() + q.z() * q.z();
     T times = T(2.0);
-    if (sine2 > T(1e-20)) {
+    if (sine2 > T(kNoSine2)) {
         const T sine = sqrt(sine2);
         times = (q.w() < T(0.0) ? atan2(-sine, -q.w()) : atan2(sine, q.w())) * 2.0 / sine;
     } else if (q.w() < T(0.0)) {

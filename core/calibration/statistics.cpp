@@ -11,13 +11,14 @@ double normal_quantile(double p) {
     assert(p > 0 && p < 1);
     if (p > 0.5) return -normal_quantile(1 - p);
     // Start on the convex side, where Newton cannot overshoot.
+    constexpr double kNewtonSettled = 1e-14;
     double x = -std::sqrt(-2 * std::log(p));
     for (int i = 0; i < 60; ++i) {
         const double excess = 0.5 * std::erfc(-x / std::sqrt(2.0)) - p;
         const double density = std::exp(-0.5 * x * x) / std::sqrt(2 * std::numbers::pi);
         const double step = std::clamp(excess / density, -0.5, 0.5);
         x -= step;
-        if (std::abs(step) < 1e-14) break;
+        if (std::abs(step) < kNewtonSettled) break;
     }
     return x;
 }
@@ -31,7 +32,7 @@ double chi_squared_quantile(double p, double freedom) {
 
 double student_quantile(double p, double freedom) {
     assert(freedom >= 1);
-    if (freedom == 1) return std::tan(3.14159265358979323846 * (p - 0.5));
+    if (freedom == 1) return std::tan(std::numbers::pi * (p - 0.5));
     if (freedom == 2) return (2 * p - 1) * std::sqrt(2 / (4 * p * (1 - p)));
     const double z = normal_quantile(p), z2 = z * z;
     const double g1 = (z2 + 1) * z / 4;

@@ -1,6 +1,7 @@
 #include "core/calibration/board/board.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -109,11 +110,16 @@ namespace detail {
 constexpr double kSaturatedThin = 0.35;
 constexpr double kDarkQuantile = 0.005;   // of the grey values: what is darker is stretched to black
 constexpr double kLightQuantile = 0.985;  // of the grey values: what is lighter is stretched to white
+constexpr int kLeastStretch = 4;          // grey values that are stretched, however flat the picture
+constexpr double kNearSaturation = 235;   // of 255
+// Longer side of the pictures that are searched, one after the other.
+constexpr std::array kSides_px{1600.0, 3200.0};
+constexpr float kLeastKept = 1e-3F;  // of the pixels around: guards the mean where all are the stripe's
 
 std::vector<cv::Mat> reduced(const cv::Mat& grey) {
     const double longest = std::max(grey.cols, grey.rows);
     std::vector<cv::Mat> pictures;
-    for (const double side : {1600.0, 3200.0}) {
+    for (const double side : kSides_px) {
         if (!pictures.empty() && pictures.back().cols == grey.cols) break;
         if (longest <= side) {
             pictures.push_back(grey);
@@ -140,7 +146,7 @@ cv::Mat grey_of(const StripeImage& image) {
 cv::Mat stripe_mask(const cv::Mat& grey) {
     // The stripe is the long connected piece near saturation. Glints are short and stay as they are.
     cv::Mat bright, labels, stats, centres;
-    cv::threshold(grey, bright, 235, 255, cv::THRESH_BINARY);
+    cv::threshold(grey, bright, kNearSaturation, 255, cv::THRESH_BINARY);
     const int count = cv::connectedComponentsWithStats(bright, labels, stats, centres, 8);
     cv::Mat mask = cv::Mat::zeros(grey.size(), CV_8U);
     const int least = std::max(grey.cols, grey.rows) / 12;
@@ -167,7 +173,7 @@ cv::Mat without_stripe(const cv::Mat& grey, const cv::Mat& stripe) {
     cv::Mat sum, total;
     cv::boxFilter(value, sum, CV_32F, {81, 81});
     cv::boxFilter(weight, total, CV_32F, {81, 81});
-    cv::Mat fill = sum / cv::max(total, 1e-3f), fill8, out = grey.clone();
+    cv::Mat fill = sum / cv::max(total, kLeastKept), fill8, out = grey.clone();
     fill.convertTo(fill8, CV_8U);
     fill8.copyTo(out, wide);
     return out;
@@ -188,7 +194,8 @@ cv::Mat stretched(const cv::Mat& grey, const cv::Mat& ignore, double gamma) {
             if ((sum += histogram[static_cast<std::size_t>(i)]) > q * total) return i;
         return 255;
     };
-    const double low = quantile(kDarkQuantile), high = std::max<double>(quantile(kLightQuantile), low + 4);
+    const double low = quantile(kDarkQuantile),
+                 high = std::max<double>(quantile(kLightQuantile), low + kLeastStretch);
     cv::Mat table(1, 256, CV_8U), out;
     for (int i = 0; i < 256; ++i)
         table.at<std::uint8_t>(i) = cv::saturate_cast<std::uint8_t>(

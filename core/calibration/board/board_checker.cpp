@@ -64,9 +64,10 @@ class Candidate {
     }
 
     bool enough() const {
+        constexpr std::size_t kLeastPercent = 45, kFewest = 7;  // of the board's corners
         const std::size_t total =
             static_cast<std::size_t>(spec_.columns) * static_cast<std::size_t>(spec_.rows);
-        return lattice_.size() * 100 >= total * 45 && lattice_.size() >= 7;
+        return lattice_.size() * 100 >= total * kLeastPercent && lattice_.size() >= kFewest;
     }
 
     struct Window {
@@ -185,6 +186,7 @@ BoardSearch find_checker(const cv::Mat& grey, double full_scale, const BoardSpec
     // it fills a corner of a large picture.
     constexpr double kFinest = 1.7e6;
     constexpr double kRadius = 4;
+    constexpr int kSmallestPicture_px = 48;
     int finest = 1;
     while (static_cast<double>(grey.total()) / (finest * finest) > kFinest) finest *= 2;
     BoardSearch best;
@@ -196,7 +198,7 @@ BoardSearch find_checker(const cv::Mat& grey, double full_scale, const BoardSpec
         else
             cv::resize(grey(cv::Rect(0, 0, grey.cols / factor * factor, grey.rows / factor * factor)), small,
                        {grey.cols / factor, grey.rows / factor}, 0, 0, cv::INTER_AREA);
-        if (std::min(small.cols, small.rows) < 48) return false;
+        if (std::min(small.cols, small.rows) < kSmallestPicture_px) return false;
         const cv::Mat soft = softened_root(small, full_scale);
         const auto saddles = find_saddles(soft, kRadius);
         const auto lattices =

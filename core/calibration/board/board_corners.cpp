@@ -22,6 +22,7 @@ constexpr double kMostForeign = 0.1;     // of the window: a corner added by pre
 constexpr double kLeastContrastSearched = 0.65;
 constexpr double kMostNoiseSearched = 0.2;  // of its own contrast, for such a corner
 constexpr double kOffPrediction = 0.12;     // of the least step: farther off it is another thing
+constexpr double kStrayed = 0.25;           // of the least step, from where its fit began
 constexpr double kMisfitMeasured = 0.1;     // of a step, from where the corners around a measured corner say
 // The usual rest of the fit, over its contrast: above (plus kRestMore) the window holds something else.
 constexpr double kRestTimes = 1.7;
@@ -107,7 +108,7 @@ double measure_corners(const cv::Mat& small, SaddleLattice& lattice) {
                 continue;
             }
             const auto fit = fit_corner(small, start_at(cell, *place, corner.at, kRough));
-            if (!fit || !sound(*fit) || (fit->at - corner.at).norm() > 0.25 * place->least_step())
+            if (!fit || !sound(*fit) || (fit->at - corner.at).norm() > kStrayed * place->least_step())
                 bad.push_back(cell);
             else
                 fits.emplace(cell, *fit);
@@ -154,7 +155,8 @@ void refine_corners(const cv::Mat& grey, double factor, double blur_px, SaddleLa
     const LatticeBox box = box_of(lattice);
     for (auto& [cell, corner] : lattice)
         corner.at = (corner.at + Vector2d(0.5, 0.5)) * factor - Vector2d(0.5, 0.5);
-    const int usual_half = lattice.size() > 400 ? 6 : lattice.size() > 120 ? 8 : 11;
+    constexpr std::size_t kSomeCorners = 120, kManyCorners = 400;  // of many, a smaller window
+    const int usual_half = lattice.size() > kManyCorners ? 6 : lattice.size() > kSomeCorners ? 8 : 11;
     // A soft edge needs a window that reaches beyond it.
     const int most = std::clamp(static_cast<int>(3 * blur_px), usual_half, 26);
     std::map<LatticeCell, CornerFit> fits;

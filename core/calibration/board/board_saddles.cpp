@@ -114,6 +114,7 @@ std::vector<Saddle> find_saddles(const cv::Mat& soft, double radius_px) {
     constexpr float kLeastResponse = 3e-4F;  // the threshold's lower limit, of a picture without noise
     // ... and its upper one: a saddle this strong is never lost for noise
     constexpr float kMostResponse = 0.02F;
+    constexpr float kNoiseTimes = 6;  // the noise, above which a peak is looked at
     // The noise: what half of the places with a saddle's sign have at most.
     std::vector<float> some;
     for (int y = rim; y < h - rim; y += 7)
@@ -121,7 +122,7 @@ std::vector<Saddle> find_saddles(const cv::Mat& soft, double radius_px) {
             if (const float r = response.at<float>(y, x); r > 0) some.push_back(r);
     if (some.empty()) return out;
     std::nth_element(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(some.size() / 2), some.end());
-    const float least = std::clamp(6 * some[some.size() / 2], kLeastResponse, kMostResponse);
+    const float least = std::clamp(kNoiseTimes * some[some.size() / 2], kLeastResponse, kMostResponse);
     struct Peak {
         float response;
         int x, y;
@@ -154,7 +155,8 @@ std::vector<Saddle> find_saddles(const cv::Mat& soft, double radius_px) {
         const double gx = 0.5 * (b[1] - b[-1]), gy = 0.5 * (c[0] - a[0]);
         const double det = xx * yy - xy * xy;
         const double dx = (xy * gy - yy * gx) / det, dy = (xy * gx - xx * gy) / det;
-        if (!(std::abs(dx) < 1.5 && std::abs(dy) < 1.5)) continue;
+        constexpr double kFarthest_px = 1.5;  // of the parabola's saddle from the pixel
+        if (!(std::abs(dx) < kFarthest_px && std::abs(dy) < kFarthest_px)) continue;
         if (auto s = edges_through(soft, ring, {p.x + dx, p.y + dy})) out.push_back(*s);
     }
     return out;
@@ -222,7 +224,10 @@ constexpr double kMostBlur = 0.6;      // of half the window
 constexpr double kSettled_px = 1e-3;   // move of the corner below which a fit has settled
 constexpr double kSettledCost = 1e-3;  // relative gain in cost below which it has
 constexpr double kDampingDown = 0.15;
-constexpr double kLeastScale = 0.02;  // of half the contrast: the noise is not taken for smaller
+constexpr double kLeastScale = 0.02;   // of half the contrast: the noise is not taken for smaller
+constexpr double kRounding = 0.5;      // grey values, that the noise is at least where pixels are weighed
+constexpr double kLeastFreedom = 3.0;  // pixels' weight beyond the nine numbers, in their variance
+constexpr double kLeastSeen = 12;      // pixels' weight that the nine numbers are solved from
 // Noise scales at which the biweight's weight ends: 95 % efficient on normal noise.
 constexpr double kTukey = 4.7;
 constexpr double kCleanReach = 0.6;      // of that reach: nothing in the window asks for weights
@@ -366,7 +371,7 @@ std::optional<CornerFit> fit_corner(const cv::Mat& grey, const CornerStart& star
     const auto solve = [&](int rounds) {
         accumulate(window, p, start.bend1, start.bend2, residual, sum);
         for (int i = 0; i < rounds; ++i) {
-            if (sum.weight < 12) return false;
+            if (sum.weight < kLeastSeen) return false;
             Matrix9 m = sum.normal;
             m.diagonal() *= 1 + damping;
             m.diagonal().array() += kRidge;
@@ -398,7 +403,7 @@ std::optional<CornerFit> fit_corner(const cv::Mat& grey, const CornerStart& star
         scale = std::max(kMadToSigma * middle_of(size), kLeastScale * p(5));
         if (round == 2) break;
         // The pixel's own rounding is noise as well.
-        const double reach = kTukey * std::max(scale, 0.5);
+        const double reach = kTukey * std::max(scale, kRounding);
         if (round == 0 && *std::max_element(size.begin(), size.end()) < kCleanReach * reach) break;
         foreign = 0;
         for (std::size_t i = 0; i < window.size(); ++i) {
@@ -423,7 +428,7 @@ std::optional<CornerFit> fit_corner(const cv::Mat& grey, const CornerStart& star
         fit.second.dot(start.second) < kLeastTurnCosine)
         return std::nullopt;
     const Eigen::LDLT<Matrix9> ldlt(sum.normal + kRidge * Matrix9::Identity());
-    const double variance = sum.cost / std::max(sum.weight - 9, 3.0);
+    const double variance = sum.cost / std::max(sum.weight - 9, kLeastFreedom);
     Vector9 unit = Vector9::Zero();
     unit(0) = 1;
     const double xx = ldlt.solve(unit)(0);

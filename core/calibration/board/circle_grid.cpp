@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <map>
@@ -27,7 +28,15 @@ constexpr double kAroundDot = 2.5;       // radii around a dot that are looked a
 constexpr double kNextDotWithin = 0.33;  // of a step from where it is expected
 
 constexpr double kSoft_px = 0.7;
-constexpr double kLargestDot = 0.02;  // of the picture's area
+constexpr double kLargestDot = 0.02;                   // of the picture's area
+constexpr std::array kOffsets{6.0, 14.0};              // grey values that a dot is darker than around it
+constexpr std::array kLevels{0.35, 0.45, 0.55, 0.65};  // between dark and light, that a dot is cut at
+constexpr double kSameCentre = 0.5;                    // of the radius, from one another
+constexpr double kOffGrid = 0.25;                      // of the spacing, from the grid's homography
+constexpr double kMarkLarger = 1.25;  // than the middling dot of the grid: the orientation mark
+constexpr double kLeastSine = 0.5;    // between a grid's two directions
+constexpr double kLeastArea_px2 = 12;
+constexpr std::size_t kMostSeeds = 60;
 
 struct Dot {
     cv::Point2d centre;
@@ -45,7 +54,7 @@ void ellipses(const cv::Mat& binary, double largest_px2, std::vector<Dot>& out) 
         if (box.x <= 0 || box.y <= 0 || box.x + box.width >= binary.cols || box.y + box.height >= binary.rows)
             continue;
         const cv::Moments m = cv::moments(c);
-        if (m.m00 < 12 || m.m00 > largest_px2) continue;
+        if (m.m00 < kLeastArea_px2 || m.m00 > largest_px2) continue;
         // An ellipse of semi-axes p, q has second moments p^2/4, q^2/4 and area pi p q.
         const double xx = m.mu20 / m.m00, xy = m.mu11 / m.m00, yy = m.mu02 / m.m00;
         const double half = 0.5 * (xx + yy), root = std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
@@ -66,7 +75,8 @@ std::vector<Dot> find_dots(const cv::Mat& grey) {
             bool known = false;
             for (auto& m : merged) {
                 const double apart = cv::norm(d.centre - m.centre);
-                if (apart > 0.5 * m.radius || std::abs(d.radius - m.radius) > kSameRadius * m.radius + 1)
+                if (apart > kSameCentre * m.radius ||
+                    std::abs(d.radius - m.radius) > kSameRadius * m.radius + 1)
                     continue;
                 m.centre = (m.centre * m.seen + d.centre) * (1.0 / (m.seen + 1));
                 m.radius = (m.radius * m.seen + d.radius) / (m.seen + 1);
@@ -89,7 +99,7 @@ std::vector<Dot> find_dots(const cv::Mat& grey) {
     }
     for (const int block : {21, 41, 81}) {
         if (block >= std::min(grey.cols, grey.rows)) continue;
-        for (const double offset : {6.0, 14.0}) {
+        for (const double offset : kOffsets) {
             cv::adaptiveThreshold(soft, binary, 255, cv::ADAPTIVE_THRESH_GAUSSIAN_C, cv::THRESH_BINARY_INV,
                                   block, offset);
             dots.clear();
@@ -114,13 +124,13 @@ void measure_in_full(const cv::Mat& full, Dot& dot) {
     double dark = 0, light = 0;
     cv::minMaxLoc(soft, &dark, &light);
     std::vector<Dot> seen, kept;
-    for (const double level : {0.35, 0.45, 0.55, 0.65}) {
+    for (const double level : kLevels) {
         cv::threshold(soft, binary, dark + level * (light - dark), 255, cv::THRESH_BINARY_INV);
         seen.clear();
         ellipses(binary, static_cast<double>(soft.total()), seen);
         for (Dot& d : seen) {
             d.centre += cv::Point2d(around.tl());
-            if (cv::norm(d.centre - dot.centre) < 0.5 * dot.radius &&
+            if (cv::norm(d.centre - dot.centre) < kSameCentre * dot.radius &&
                 std::abs(d.radius - dot.radius) < kSameRadius * dot.radius)
                 kept.push_back(d);
         }
@@ -253,7 +263,7 @@ std::optional<FoundBoard> as_board(const std::vector<Dot>& dots, std::vector<Pla
     if (!h) return std::nullopt;
     const double spacing = 2 * std::min(x.norm(), y.norm());
     for (std::size_t i = 0; i < grid.size(); ++i)
-        if ((at(grid[i].x(), grid[i].y()) - image[i]).norm() > 0.25 * spacing) return std::nullopt;
+        if ((at(grid[i].x(), grid[i].y()) - image[i]).norm() > kOffGrid * spacing) return std::nullopt;
 
     // The orientation mark: one corner dot much bigger than its fellows, or the only corner cut off by the
     // image's edge.
@@ -265,7 +275,7 @@ std::optional<FoundBoard> as_board(const std::vector<Dot>& dots, std::vector<Pla
     const Cell corners[4] = {
         {0, 0}, {spec.columns - 1, 0}, {spec.columns - 1, spec.rows - 1}, {0, spec.rows - 1}};
     int mark = -1;
-    double biggest = 1.25 * usual;
+    double biggest = kMarkLarger * usual;
     int missing = 0, missing_at = -1;
     for (int k = 0; k < 4; ++k) {
         const auto found = std::find_if(placed.begin(), placed.end(), [&](const Placed& p) {
@@ -324,7 +334,7 @@ std::optional<FoundBoard> grid_of(const std::vector<Dot>& dots, const BoardSpec&
     std::sort(seeds.begin(), seeds.end(), [&](std::size_t a, std::size_t b) {
         return cv::norm(dots[a].centre - middle) < cv::norm(dots[b].centre - middle);
     });
-    if (seeds.size() > 60) seeds.resize(60);
+    if (seeds.size() > kMostSeeds) seeds.resize(kMostSeeds);
     for (const auto seed : seeds) {
         std::vector<std::pair<double, std::size_t>> near;
         for (std::size_t i = 0; i < dots.size(); ++i)
@@ -336,7 +346,7 @@ std::optional<FoundBoard> grid_of(const std::vector<Dot>& dots, const BoardSpec&
         cv::Point2d b(0, 0);
         for (std::size_t k = 1; k < keep; ++k) {
             const cv::Point2d c = dots[near[k].second].centre - dots[seed].centre;
-            if (std::abs(a.cross(c)) > 0.5 * cv::norm(a) * cv::norm(c)) {
+            if (std::abs(a.cross(c)) > kLeastSine * cv::norm(a) * cv::norm(c)) {
                 b = c;
                 break;
             }

@@ -5,8 +5,10 @@
 #include <map>
 #include <set>
 
+#include "core/calibration/bundle/bundle_limits.h"
 #include "core/calibration/bundle/onto_rays.h"
 #include "core/calibration/camera/camera_costs.h"
+#include "core/calibration/numbers.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/statistics.h"
 #include "core/geometry/decompositions.h"
@@ -18,6 +20,12 @@ constexpr double kGoodObject_mm = 0.2, kUsableObject_mm = 1.0;  // three sigma a
 constexpr double kOpen = 1e-9;  // smallest eigenvalue of the information scaled to unit diagonal
 constexpr double kRival = 3.0;  // a rival's misfit, in those of the best and at least the unknown noise
 constexpr double kRivalApart_rad = 0.02;
+constexpr double kRivalFloor = 0.1;            // of the unknown noise's squares: the best counts as no better
+constexpr double kUnseen = 1e-300;             // information of a direction that no sight tells
+constexpr double kSameFeature_mm = 1e-6;       // apart at most, of one feature's places on the object
+constexpr double kLeastRestSight_px2 = 1e-12;  // squares that exact sights leave, beside a wrong one ..
+constexpr double kLeastRestCamera_px2 = 1e-9;  // .. and beside a wrong camera
+constexpr double kNoiseBelievable = 0.999;     // of chi squared: what the stated noise may leave
 constexpr int kFolds = 10;
 constexpr std::size_t kRefined = 6;
 
@@ -47,7 +55,7 @@ class Bundle {
         fit.squares = known.cost;
         fit.information = known.information;
         if (!std::isfinite(fit.squares) || !fit.information.allFinite()) return fit;
-        const Vector6 scale = fit.information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+        const Vector6 scale = fit.information.diagonal().cwiseMax(kUnseen).cwiseSqrt().cwiseInverse();
         const Matrix6 unit = scale.asDiagonal() * fit.information * scale.asDiagonal();
         fit.determined = symmetric_eigen(unit).values(0) > kOpen;
         return fit;
@@ -129,7 +137,7 @@ class Bundle {
         Jacobian j;
         for (int k = 0; k < 6; ++k) {
             Vector6 step = Vector6::Zero();
-            step(k) = k < 3 ? 1e-3 : 1e-6;
+            step(k) = k < 3 ? kPoseStep_mm : kPoseStep_rad;
             j.col(k) = (at(step) - at(-step)) / (2 * step(k));
         }
         return j;
@@ -180,12 +188,12 @@ Expected<void> check(const std::vector<PlacedCamera>& cameras, const std::vector
         if (!std::isfinite(s.weight) || s.weight < 0)
             return input_error("the weight must be 0 or positive", where,
                                "give 1 for an ordinary feature, 0 for none");
-        if (!s.object_mm.allFinite() || s.object_mm.cwiseAbs().maxCoeff() > 1e5)
+        if (!s.object_mm.allFinite() || s.object_mm.cwiseAbs().maxCoeff() > kLargestBody_mm)
             return input_error("its place on the object is not finite or beyond 100 m", where,
                                "give millimetres");
         if (s.weight > 0) SEAM_OK(check_pixel(cameras[s.camera], s.pixel, where));
         const auto [at, fresh] = places.emplace(s.feature, s.object_mm);
-        if (!fresh && (at->second - s.object_mm).norm() > 1e-6)
+        if (!fresh && (at->second - s.object_mm).norm() > kSameFeature_mm)
             return input_error("the same feature stands at two places of the object", where,
                                "give different features different ids");
         if (!pairs.emplace(s.camera, s.feature).second)
@@ -231,7 +239,7 @@ void drop_wrong(const Bundle& bundle, std::vector<char>& use, std::vector<Fit>& 
         }
         if (suspect == use.size()) return;
         const double f = (fits.front().squares - best.front().squares) / 2 /
-                         (std::max(best.front().squares, 1e-12) / redundancy);
+                         (std::max(best.front().squares, kLeastRestSight_px2) / redundancy);
         const double miss = bundle.off(suspect, best.front().pose).norm();
         if (f < outlier_limit(redundancy) || !(miss > kSmallestWrong_px)) return;
         use[suspect] = 0;
@@ -300,8 +308,8 @@ std::string camera_against_the_others(const Bundle& bundle, const std::vector<ch
         if (own == 0 || redundancy < 4 || features_of(bundle.sights(), without).size() < 3) continue;
         const Fit fit = bundle.refine(all.pose, without);
         if (!fit.determined) continue;
-        const double f =
-            (all.squares - fit.squares) / (2.0 * own) / (std::max(fit.squares, 1e-9) / redundancy);
+        const double f = (all.squares - fit.squares) / (2.0 * own) /
+                         (std::max(fit.squares, kLeastRestCamera_px2) / redundancy);
         // The more numbers it has, the less each may be off.
         const double limit = (1 + (outlier_limit(redundancy) - 1) * 2 / (2.0 * own));
         if (f / limit > largest) {
@@ -321,7 +329,8 @@ Judgement judged(const BundleResult& r, const std::string& against, double redun
         return {Verdict::poor, Text("camera '{}' contradicts the others", against),
                 "check its place, or leave it out"};
     if (options.sigma_px && redundancy > 0 &&
-        squares > chi_squared_quantile(0.999, redundancy) * *options.sigma_px * *options.sigma_px + of_places)
+        squares > chi_squared_quantile(kNoiseBelievable, redundancy) * *options.sigma_px * *options.sigma_px +
+                      of_places)
         return {Verdict::poor, Text("the features miss by more than the stated noise allows: {}", fit),
                 "check the features' places on the object and where the cameras stand"};
     if (3 * r.worst_mm > kUsableObject_mm || r.sigma_px > kUsableNoise_px)
@@ -407,7 +416,7 @@ Expected<BundleResult> locate_object(const std::vector<PlacedCamera>& cameras,
     const double count = count_of(use), redundancy = 2 * count - 6;
     const double floor = count * kUnknownNoise_px * kUnknownNoise_px;
     if (fits.size() > 1 && fits[1].determined &&
-        fits[1].squares < kRival * std::max(best.squares, 0.1 * floor)) {
+        fits[1].squares < kRival * std::max(best.squares, kRivalFloor * floor)) {
         r.rival = fits[1].pose;
         const bool nearer =
             options.start && angle_rad(*options.start, fits[1].pose) < angle_rad(*options.start, best.pose);
@@ -435,8 +444,9 @@ Expected<BundleResult> locate_object(const std::vector<PlacedCamera>& cameras,
         r.sigma_px = *options.sigma_px;
     } else if (redundancy > 0) {
         // What the cameras' places add is not the pixels' noise; a tenth stays in any case.
-        r.sigma_px = std::sqrt(std::max(fit.squares - of_places, 0.1 * fit.squares) / redundancy);
-        student = student_quantile(0.975, redundancy) / normal_quantile(0.975);
+        r.sigma_px =
+            std::sqrt(std::max(fit.squares - of_places, kLeastNoiseShare * fit.squares) / redundancy);
+        student = student_quantile(kUpper95, redundancy) / normal_quantile(kUpper95);
     } else {
         r.sigma_px = kUnknownNoise_px;
     }

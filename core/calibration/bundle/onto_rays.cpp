@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kRotations = 60, kRounds = 60, kFewRounds = 12;
 constexpr double kApart_rad = 0.02;
+constexpr double kOneWay = 1e9;  // inverse of the weights across the rays: beyond, all of them run one way
 
 struct Place {
     Pose pose = Pose::Identity();
@@ -28,7 +29,7 @@ class Alternation {
         }
         inverse_ = sum.inverse();
     }
-    bool possible() const { return inverse_.allFinite() && inverse_.cwiseAbs().maxCoeff() < 1e9; }
+    bool possible() const { return inverse_.allFinite() && inverse_.cwiseAbs().maxCoeff() < kOneWay; }
 
     Place run(const Eigen::Matrix3d& start, int rounds) const {
         Place place;

@@ -3,16 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/calibration/bundle/bundle_limits.h"
+#include "core/calibration/numbers.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/statistics.h"
 #include "core/geometry/decompositions.h"
 #include "core/median.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
 
 constexpr double kGoodPoint_mm = 0.2, kUsablePoint_mm = 1.0;  // three sigma of the worst point
 constexpr double kNarrow_deg = 5;
+constexpr double kStatedFreedom = 1000;  // stands for endless: of a noise that is stated
+// A pattern of the gaps is told beyond this many times the squares that the places allow, and beyond this.
+constexpr double kAllowedTimes = 9, kSmallestPattern_px = 0.1;
+constexpr double kNoSlope = 1e-12;              // guards the scale of a number that moves no gap
+constexpr double kSmallestKnownMiss_mm = 0.05;  // of a known point: less contradicts nothing
+constexpr double kThreeNumbers = 6;             // of chi squared: what three numbers may show beyond one
+constexpr double kSamePlace_mm = 1;             // cameras that stand nearer stand in one place
+constexpr double kParallelSine2 = 1e-12;
 constexpr int kManyGaps = 8;
 constexpr int kPlaceNumbers = 5;  // of a relative place that the gaps can show: all but the distance
 
@@ -48,7 +59,7 @@ std::optional<Meeting> meeting_of(const PlacedCamera& first, const PlacedCamera&
     m.gap_per_px = std::sqrt(variance);
     for (int k = 0; k < 12; ++k) {
         Vector6 step = Vector6::Zero();
-        step(k % 6) = k % 6 < 3 ? 1e-3 : 1e-6;
+        step(k % 6) = k % 6 < 3 ? kPoseStep_mm : kPoseStep_rad;
         PlacedCamera high = k < 6 ? first : second, low = high;
         high.world_from_camera.pose = retract(high.world_from_camera.pose, step);
         low.world_from_camera.pose = retract(low.world_from_camera.pose, -step);
@@ -88,7 +99,8 @@ double noise_of(const Meetings& list, const std::vector<char>& use,
             of_places += of_places_px2(*list[i], places);
             ++n;
         }
-    return n == 0 ? kUnknownNoise_px : std::sqrt(std::max(squares - of_places, 0.1 * squares) / n);
+    return n == 0 ? kUnknownNoise_px
+                  : std::sqrt(std::max(squares - of_places, kLeastNoiseShare * squares) / n);
 }
 
 // The noise by the median of the gaps.
@@ -96,7 +108,7 @@ double middle_gap_px(const Meetings& list, const std::vector<char>& use) {
     std::vector<double> gaps;
     for (std::size_t i = 0; i < list.size(); ++i)
         if (use[i]) gaps.push_back(std::abs(gap_px(*list[i])));
-    return 1.4826 * median(gaps);
+    return kMadToSigma * median(gaps);
 }
 
 // Two points of the scene taken for one: the largest gap against the rest.
@@ -119,7 +131,7 @@ void drop_wrong(const Meetings& list, std::vector<char>& use, const Eigen::Matri
                              : others < kManyGaps ? noise_of(list, rest, places)
                                                   : middle_gap_px(list, rest);
         const double chance = noise * noise + of_places_px2(*list[suspect], places);
-        if (largest * largest / chance < outlier_limit(stated ? 1000 : others)) return;
+        if (largest * largest / chance < outlier_limit(stated ? kStatedFreedom : others)) return;
         use = rest;
         rows[suspect].used = false;
         rows[suspect].contradicts = true;
@@ -144,15 +156,15 @@ double pattern_px(const Meetings& list, const std::vector<char>& use,
         allowed += of_places_px2(*list[i], places);
     }
     // Millimetre and radian on one scale.
-    const Eigen::VectorXd scale = a.colwise().norm().transpose().cwiseMax(1e-12);
+    const Eigen::VectorXd scale = a.colwise().norm().transpose().cwiseMax(kNoSlope);
     const SingularValues s = singular_values(a * scale.cwiseInverse().asDiagonal());
     const Eigen::VectorXd along = s.u.leftCols(kPlaceNumbers).transpose() * b;
     const double explained = along.squaredNorm(), rest = b.squaredNorm() - explained;
     const auto freedom = static_cast<double>(n - kPlaceNumbers);
     if (explained / kPlaceNumbers < (rest / freedom) * (1 + outlier_limit(freedom) / 3)) return 0;
-    if (explained < 9 * allowed) return 0;
+    if (explained < kAllowedTimes * allowed) return 0;
     const double pattern = std::sqrt(explained / static_cast<double>(n));
-    return pattern > 0.1 ? pattern : 0;
+    return pattern > kSmallestPattern_px ? pattern : 0;
 }
 
 struct KnownPoints {
@@ -165,7 +177,8 @@ Judgement judged(const StereoResult& r, const KnownPoints& known, double pattern
     const Text fit("{} points, noise {:.2f} px, three sigma of the worst point {:.3f} mm", used, r.sigma_px,
                    3 * r.worst_mm);
     // Three numbers, picked as the largest of all.
-    if (r.known > 0 && known.chi_squared > outlier_limit(1000) + 6 && known.max_mm > 0.05)
+    if (r.known > 0 && known.chi_squared > outlier_limit(kStatedFreedom) + kThreeNumbers &&
+        known.max_mm > kSmallestKnownMiss_mm)
         return {Verdict::poor,
                 Text("point '{}' lies {:.2f} mm from where it is known to be", known.worst, known.max_mm),
                 "check the places of the cameras, their lenses and the known points"};
@@ -190,7 +203,7 @@ Judgement judged(const StereoResult& r, const KnownPoints& known, double pattern
 Expected<void> check(const PlacedCamera& first, const PlacedCamera& second,
                      const std::vector<StereoSight>& sights, const StereoOptions& options) {
     SEAM_OK(check_cameras({first, second}));
-    if (distance_mm(first.world_from_camera.pose, second.world_from_camera.pose) < 1)
+    if (distance_mm(first.world_from_camera.pose, second.world_from_camera.pose) < kSamePlace_mm)
         return input_error("both cameras stand in the same place", "cameras",
                            "say where each stands in the world");
     if (sights.empty()) return input_error("there are no points", "points", "give one or more");
@@ -199,7 +212,7 @@ Expected<void> check(const PlacedCamera& first, const PlacedCamera& second,
         const Text where("point '{}'", s.id);
         SEAM_OK(check_pixel(first, s.first_px, where));
         SEAM_OK(check_pixel(second, s.second_px, where));
-        if (s.known_mm && (!s.known_mm->allFinite() || s.known_mm->cwiseAbs().maxCoeff() > 1e6))
+        if (s.known_mm && (!s.known_mm->allFinite() || s.known_mm->cwiseAbs().maxCoeff() > kFarthestPoint_mm))
             return input_error("its place in the world is not finite or beyond 1 km", where,
                                "give millimetres");
         ids.push_back(s.id);
@@ -221,7 +234,7 @@ std::optional<RayMeeting> meet_rays(const PlacedCamera& first, const Eigen::Vect
     // a + s u and b + t v where the connection is perpendicular to both.
     const Eigen::Vector3d w = b.translation() - a.translation();
     const double c = u.dot(v), sine2 = 1 - c * c;
-    if (sine2 < 1e-12) return std::nullopt;
+    if (sine2 < kParallelSine2) return std::nullopt;
     const double s = (w.dot(u) - c * w.dot(v)) / sine2, t = (c * w.dot(u) - w.dot(v)) / sine2;
     if (!(s > 0) || !(t > 0)) return std::nullopt;
     const Eigen::Vector3d p = a.translation() + s * u, q = b.translation() + t * v;
@@ -267,7 +280,7 @@ Expected<StereoResult> intersect(const PlacedCamera& first, const PlacedCamera& 
         r.sigma_px = kUnknownNoise_px;
     } else {
         r.sigma_px = noise_of(list, use, places);
-        student = student_quantile(0.975, used) / normal_quantile(0.975);
+        student = student_quantile(kUpper95, used) / normal_quantile(kUpper95);
     }
     const double variance_px2 = std::pow(student * r.sigma_px, 2);
     double gaps = 0;

@@ -8,8 +8,10 @@
 #include <numeric>
 #include <set>
 
+#include "core/calibration/camera/camera_limits.h"
 #include "core/calibration/camera/plate_bundle.h"
 #include "core/calibration/camera/projection.h"
+#include "core/calibration/numbers.h"
 #include "core/calibration/pose_set.h"
 #include "core/median.h"
 #include "core/numbers.h"
@@ -18,6 +20,8 @@ namespace seamwright {
 namespace {
 
 constexpr double kLeastCornerSigma_px = 1e-3;  // exact corners do not make a prior infinitely weak
+constexpr double kSmallestTarget_mm = 0.5;     // spread along its longest axis; less looks like metres
+constexpr double kFlatTarget = 0.05;           // of its width: a target less deep is a plate
 
 // From simple to rich.
 constexpr CameraFreedom kLadder[] = {
@@ -38,7 +42,8 @@ Eigen::Vector3d extents(const std::vector<Eigen::Vector3d>& points) {
 }
 
 Expected<void> check(const CameraData& data, const CameraOptions& options) {
-    if (data.width < 16 || data.height < 16 || data.width > 100000 || data.height > 100000)
+    if (data.width < kSmallestImage_px || data.height < kSmallestImage_px || data.width > kLargestImage_px ||
+        data.height > kLargestImage_px)
         return input_error(Text("an image of {}x{} pixels is not possible", data.width, data.height), "size",
                            "give width and height of the images in pixels");
     std::vector<std::string> ids;
@@ -56,7 +61,7 @@ Expected<void> check(const CameraData& data, const CameraOptions& options) {
                                "leave the view out or give more points");
         for (std::size_t i = 0; i < v.pixel.size(); ++i) {
             if (!v.pixel[i].allFinite() || !v.object_mm[i].allFinite() ||
-                v.object_mm[i].cwiseAbs().maxCoeff() > 1e6)
+                v.object_mm[i].cwiseAbs().maxCoeff() > kFarthestPoint_mm)
                 return input_error(Text("point {} is not a finite number of millimetres and pixels", i),
                                    where, "leave it out");
             if (v.pixel[i].x() < -1 || v.pixel[i].y() < -1 || v.pixel[i].x() > data.width ||
@@ -66,11 +71,11 @@ Expected<void> check(const CameraData& data, const CameraOptions& options) {
                                    where, "check the image size; all views must have the same");
         }
         const Eigen::Vector3d e = extents(v.object_mm);
-        if (!(e(1) > 1e-3 * e(0)))
+        if (!(e(1) > kPointsOnALine * e(0)))
             return input_error("the points lie on one line", where, "give points that span a plane");
         size_mm = std::max(size_mm, e(0));
     }
-    if (size_mm < 0.5)
+    if (size_mm < kSmallestTarget_mm)
         return input_error(Text("the target is {:.3f} mm across, which looks like metres", 2 * size_mm),
                            "views", "give its points in millimetres");
     return {};
@@ -83,7 +88,7 @@ int twin_of(const CameraData& data, std::size_t view) {
         if (a.size() != b.size()) continue;
         double worst = 0;
         for (std::size_t k = 0; k < a.size(); ++k) worst = std::max(worst, (a[k] - b[k]).norm());
-        if (worst < 1e-3) return static_cast<int>(i);
+        if (worst < kSamePicture_px) return static_cast<int>(i);
     }
     return -1;
 }
@@ -185,7 +190,8 @@ int drop_outliers(const CameraData& data, const CameraSolution& solution, double
     for (std::size_t i = 0; i < data.views.size(); ++i)
         for (std::size_t k = 0; k < data.views[i].pixel.size(); ++k)
             if (used[i][k]) size.push_back(residual(i, k));
-    const double limit = std::max(sigmas * median(size) / 1.1774, 1e-6);  // median of a Rayleigh distribution
+    constexpr double kLeastLimit_px = 1e-6;  // rounding of exact corners is nothing wrong
+    const double limit = std::max(sigmas * median(size) / kRayleighMedian, kLeastLimit_px);
     int dropped = 0;
     for (std::size_t i = 0; i < data.views.size(); ++i) {
         int room = static_cast<int>(data.views[i].pixel.size() / 10);
@@ -232,9 +238,13 @@ double hull_share(const CameraData& data) {
 Text plate_hint(const CameraData& data, const std::vector<std::vector<char>>& used,
                 const CameraFreedom& freedom, const CameraSolution& solution) {
     if (data.views.size() < 5) return {};
+    // Asked of plates given as flat in z = 0 alone: depth over length, and height.
+    constexpr double kGivenFlat = 1e-6, kGivenAtZero_mm = 1e-9;
+    // Of the corners' sum of squares: what a free shape must fall below to be worth a word.
+    constexpr double kShapeTells = 0.7;
     for (const auto& v : data.views) {
         const Eigen::Vector3d e = extents(v.object_mm);
-        if (e(2) > 1e-6 * e(0) || std::abs(v.object_mm[0].z()) > 1e-9) return {};
+        if (e(2) > kGivenFlat * e(0) || std::abs(v.object_mm[0].z()) > kGivenAtZero_mm) return {};
     }
     PlateBundle p;
     p.data = &data;
@@ -253,7 +263,7 @@ Text plate_hint(const CameraData& data, const std::vector<std::vector<char>>& us
     s.shape.middle_mm = 0.5 * (low + high);
     s.shape.half_mm = 0.5 * (high - low).maxCoeff();
     const auto fit = solve_plate_bundle(p, s);
-    if (!fit.covariance.size() || fit.corner_cost > 0.7 * solution.cost) return {};
+    if (!fit.covariance.size() || fit.corner_cost > kShapeTells * solution.cost) return {};
     return Text(
         "the plate is not as stated: stretched {:.2f} %, sheared {:.2f} %, bowed {:.2f} mm would halve the "
         "residuals",
@@ -262,29 +272,32 @@ Text plate_hint(const CameraData& data, const std::vector<std::vector<char>>& us
 }
 
 Judgement judge(const CameraResult& r, std::size_t views, const Text& hint) {
+    // What is worse is poor, or usable: sigma of the focal length over itself, and fit of the corners.
+    constexpr double kPoorFocal = 0.01, kUsableFocal = 0.002, kUsableCorners_px = 0.5;
+    constexpr double kCoveredShare = 1.0 / 3;  // of the image: less extrapolates the distortion
     const double f = 0.5 * (r.camera.fx + r.camera.fy);
     const double sigma = r.report.covariance.size() ? r.report.parameters[0].sigma : kInfinity;
     const char* tilt =
         "take 10 or more views with the plate tilted by 20 to 40 degrees in different directions";
-    if (!(sigma < 0.05 * f) || !std::isfinite(f))
+    if (!(sigma < kOpenFocal * f) || !std::isfinite(f))
         return {
             Verdict::undetermined,
             Text(
                 "the views do not determine the focal length (their plates differ by {:.1f} degrees of tilt)",
                 r.tilt_spread_deg),
             tilt};
-    if (r.rms_px > 1.5)
+    if (r.rms_px > kPoorCorners_px)
         return {Verdict::poor, Text("the points fit to {:.2f} px only", r.rms_px),
                 "check focus, the pattern's size and that the plate is flat"};
-    if (sigma > 0.01 * f)
+    if (sigma > kPoorFocal * f)
         return {Verdict::poor, Text("the focal length is known to {:.1f} % only", 100 * sigma / f), tilt};
     if (!hint.empty()) return {Verdict::usable, hint, "measure the plate or take a flat one"};
-    if (sigma > 0.002 * f)
+    if (sigma > kUsableFocal * f)
         return {Verdict::usable, Text("the focal length is known to {:.2f} %", 100 * sigma / f), tilt};
-    if (r.rms_px > 0.5)
+    if (r.rms_px > kUsableCorners_px)
         return {Verdict::usable, Text("the points fit to {:.2f} px", r.rms_px),
                 "check focus and that the plate is flat"};
-    if (r.covered_share < 1.0 / 3)
+    if (r.covered_share < kCoveredShare)
         return {Verdict::usable,
                 Text("the views cover {:.0f} % of the image: the distortion outside is extrapolated",
                      100 * r.covered_share),
@@ -317,7 +330,7 @@ Expected<CameraResult> calibrate_camera(const CameraData& input, const CameraOpt
         drop[i] = !p.used;
         if (p.used) {
             const Eigen::Vector3d e = extents(input.views[i].object_mm);
-            flat += e(2) < 0.05 * e(1);
+            flat += e(2) < kFlatTarget * e(1);
         }
         result.report.poses.push_back(std::move(p));
         result.point_used.emplace_back(input.views[i].pixel.size(), 1);

@@ -20,7 +20,7 @@ double number(const T& x) {
 // weight * (projection - pixel); false behind the camera.
 template <class K, class T>
 bool miss(const K* k, const Vector3<T>& point, const Corner& corner, T* residual) {
-    if (!(number(point.z()) > 1e-6)) return false;
+    if (!(number(point.z()) > kLeastDepth_mm)) return false;
     const Eigen::Matrix<T, 2, 1> pixel = pixel_of_ray(k, T(point.x() / point.z()), T(point.y() / point.z()));
     residual[0] = (pixel.x() - corner.pixel.x()) * corner.weight;
     residual[1] = (pixel.y() - corner.pixel.y()) * corner.weight;
@@ -29,7 +29,8 @@ bool miss(const K* k, const Vector3<T>& point, const Corner& corner, T* residual
 
 template <class T>
 bool possible(const T* k) {
-    return number(k[0]) > 1e-3 && number(k[1]) > 1e-3;
+    constexpr double kLeastFocal_px = 1e-3;  // shorter ones are no camera
+    return number(k[0]) > kLeastFocal_px && number(k[1]) > kLeastFocal_px;
 }
 
 // Derivatives by hand: automatic ones of 21 numbers made whole camera calibrations three times as long.
@@ -186,7 +187,8 @@ KnownCamerasFit solve_pose(std::vector<Sights> sights, Pose& world_from_object) 
                                  s.camera.data(), flat.data(), pose.data());
     }
     KnownCamerasFit fit;
-    fit.cost = solve(problem, {pose.data()}, 100, 1e-12).cost;
+    constexpr double kCostSettled = 1e-12;  // relative gain that ends it
+    fit.cost = solve(problem, {pose.data()}, 100, kCostSettled).cost;
     fit.information = normal_blocks(problem, {}, {pose.data()}).vv.front();
     world_from_object = pose_of(pose);
     return fit;

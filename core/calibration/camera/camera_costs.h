@@ -16,6 +16,9 @@ namespace seamwright::camera_costs {
 
 using Shape = Eigen::Matrix<double, 5, 1>;
 
+// A point that lies less deep is behind the camera.
+inline constexpr double kLeastDepth_mm = 1e-6;
+
 struct Corner {
     Eigen::Vector3d object_mm;
     Eigen::Vector2d pixel;

@@ -4,10 +4,12 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 
 #include "core/calibration/camera/camera_costs.h"
+#include "core/calibration/camera/camera_limits.h"
 #include "core/calibration/camera/projection.h"
 #include "core/geometry/decompositions.h"
 #include "core/numbers.h"
@@ -68,7 +70,8 @@ std::optional<Pose> pose_from_homography(Eigen::Matrix3d h) {
     r.col(0) = h.col(0);
     r.col(1) = h.col(1);
     r.col(2) = h.col(0).cross(h.col(1));
-    if (!(r.determinant() > 1e-12)) return std::nullopt;
+    constexpr double kEdgeOn = 1e-12;  // of two unit axes' cross product squared: less is no plane
+    if (!(r.determinant() > kEdgeOn)) return std::nullopt;
     return make_pose(nearest_rotation(r), h.col(2));
 }
 
@@ -117,11 +120,14 @@ std::optional<Pose> plate_or_body_pose(const Intrinsics& k, const CameraPoints& 
     for (const auto& p : image)
         if (!p.allFinite()) return std::nullopt;
     const PointFrame f = frame_of(view.object_mm);
-    if (!(f.extent(1) > 1e-6 * f.extent(0))) return std::nullopt;
+    constexpr double kNoPlane = 1e-6;    // of the length: narrower points span no plane
+    constexpr double kLeastDeep = 0.02;  // of the width: flatter points are no body to the linear solution
+    constexpr double kMostDeep = 0.3;    // of the width: deeper ones no plate to the homography
+    if (!(f.extent(1) > kNoPlane * f.extent(0))) return std::nullopt;
     std::vector<Pose> starts;
-    if (f.extent(2) > 0.02 * f.extent(1) && view.pixel.size() >= 6)
+    if (f.extent(2) > kLeastDeep * f.extent(1) && view.pixel.size() >= 6)
         if (const auto pose = body_pose(view.object_mm, image)) starts.push_back(*pose);
-    if (f.extent(2) < 0.3 * f.extent(1) || starts.empty()) {
+    if (f.extent(2) < kMostDeep * f.extent(1) || starts.empty()) {
         std::vector<Eigen::Vector2d> flat;
         for (const auto& p : view.object_mm) flat.push_back((f.axes.transpose() * (p - f.centre)).head<2>());
         if (const auto h = homography_dlt(flat, image))
@@ -193,15 +199,19 @@ Eigen::MatrixXd freedom_basis(const CameraFreedom& freedom) {
 }
 
 HeldIntrinsics held_intrinsics(const CameraFreedom& freedom, double focal_px, int width) {
+    // How cameras are built (camera.h).
+    constexpr double kFocalHeld = 0.001, kCentreHeld = 0.03;  // of the focal length, of the width
+    constexpr double kK1Held = 0.3, kK2Held = 0.2, kK3Held = 0.1, kTangentialHeld = 0.002;
     std::vector<std::pair<Intrinsics, double>> held;
-    if (!freedom.two_focals) held.emplace_back(Intrinsics::Unit(0) - Intrinsics::Unit(1), 0.001 * focal_px);
+    if (!freedom.two_focals)
+        held.emplace_back(Intrinsics::Unit(0) - Intrinsics::Unit(1), kFocalHeld * focal_px);
     if (!freedom.centre)
-        for (const int i : {2, 3}) held.emplace_back(Intrinsics::Unit(i), 0.03 * width);
-    if (freedom.radial < 1) held.emplace_back(Intrinsics::Unit(4), 0.3);
-    if (freedom.radial < 2) held.emplace_back(Intrinsics::Unit(5), 0.2);
-    if (freedom.radial < 3) held.emplace_back(Intrinsics::Unit(8), 0.1);
+        for (const int i : {2, 3}) held.emplace_back(Intrinsics::Unit(i), kCentreHeld * width);
+    if (freedom.radial < 1) held.emplace_back(Intrinsics::Unit(4), kK1Held);
+    if (freedom.radial < 2) held.emplace_back(Intrinsics::Unit(5), kK2Held);
+    if (freedom.radial < 3) held.emplace_back(Intrinsics::Unit(8), kK3Held);
     if (!freedom.tangential)
-        for (const int i : {6, 7}) held.emplace_back(Intrinsics::Unit(i), 0.002);
+        for (const int i : {6, 7}) held.emplace_back(Intrinsics::Unit(i), kTangentialHeld);
     HeldIntrinsics out;
     const auto n = static_cast<Eigen::Index>(held.size());
     out.directions.resize(9, n);
@@ -240,7 +250,7 @@ double squares_px2(const Intrinsics& k, const Pose& pose, const CameraPoints& vi
     double sum = 0;
     for (std::size_t i = 0; i < view.pixel.size(); ++i) {
         const Eigen::Vector3d point = pose * view.object_mm[i];
-        if (!(point.z() > 1e-6)) return kInfinity;
+        if (!(point.z() > camera_costs::kLeastDepth_mm)) return kInfinity;
         sum += (pixel_of_ray(k.data(), point.x() / point.z(), point.y() / point.z()) - view.pixel[i])
                    .squaredNorm();
     }
@@ -262,9 +272,10 @@ std::optional<Eigen::Matrix3d> homography_dlt(const std::vector<Eigen::Vector2d>
         for (Eigen::Index k = 0; k < 2; ++k)
             ata.selfadjointView<Eigen::Lower>().rankUpdate(row.row(k).transpose());
     }
+    constexpr double kAsGood = 1e-12;  // of the largest eigenvalue
     // The answer of a DLT is what the matrix maps to least; none when a second direction is as good.
     const SymmetricEigen eigen = symmetric_eigen(ata);
-    if (!eigen.converged || !(eigen.values(1) > 1e-12 * eigen.values(8))) return std::nullopt;
+    if (!eigen.converged || !(eigen.values(1) > kAsGood * eigen.values(8))) return std::nullopt;
     const Eigen::VectorXd v = eigen.vectors.col(0);
     Eigen::Matrix3d h;
     h << v.segment<3>(0).transpose(), v.segment<3>(3).transpose(), v.segment<3>(6).transpose();
@@ -304,19 +315,24 @@ std::optional<double> focal_from_homographies(const std::vector<Eigen::Matrix3d>
 std::optional<CameraSolution> start_camera(const CameraData& data) {
     const double cx = 0.5 * (data.width - 1), cy = 0.5 * (data.height - 1),
                  unit = std::max(data.width, data.height);
+    constexpr double kFlatView = 0.1;  // of its width: deeper points are no plate to a homography
+    // In longer sides of the image: focal lengths that homographies may say, and those tried beside.
+    constexpr double kShortestFocal = 0.1, kLongestFocal = 50;
+    constexpr std::array kFocalTrials{0.6, 1.0, 1.7, 3.0, 6.0};
+    constexpr double kExplained_px2 = 25.0;  // a point
     std::vector<double> candidates;
     std::vector<Eigen::Matrix3d> homographies;
     for (const auto& view : data.views) {
         const PointFrame f = frame_of(view.object_mm);
-        if (f.extent(2) > 0.1 * f.extent(1)) continue;
+        if (f.extent(2) > kFlatView * f.extent(1)) continue;
         std::vector<Eigen::Vector2d> flat;
         for (const auto& p : view.object_mm) flat.push_back((f.axes.transpose() * (p - f.centre)).head<2>());
         if (const auto h = homography_dlt(flat, view.pixel)) homographies.push_back(*h);
     }
     if (!homographies.empty())
         if (const auto f = focal_from_homographies(homographies, cx, cy, unit))
-            if (*f > 0.1 * unit && *f < 50 * unit) candidates.push_back(*f);
-    for (const double factor : {0.6, 1.0, 1.7, 3.0, 6.0}) candidates.push_back(factor * unit);
+            if (*f > kShortestFocal * unit && *f < kLongestFocal * unit) candidates.push_back(*f);
+    for (const double factor : kFocalTrials) candidates.push_back(factor * unit);
 
     // Cheap trial of each candidate: poses under it, then a refinement of f alone; the best goes on.
     std::optional<CameraSolution> best;
@@ -338,8 +354,10 @@ std::optional<CameraSolution> start_camera(const CameraData& data) {
         CameraSolution refined = refine_camera(data, {}, only_focal, s);
         if (!std::isfinite(refined.cost) || refined.cost <= 0) continue;
         if (!best || refined.cost < best->cost) best = refined;
-        // A start that explains the data to a few pixels needs no rivals.
-        if (c == 0 && candidates.size() > 5 && best->cost < 25.0 * static_cast<double>(best->points)) break;
+        // A start of the homographies that explains the data to a few pixels needs no rivals.
+        if (c == 0 && candidates.size() > kFocalTrials.size() &&
+            best->cost < kExplained_px2 * static_cast<double>(best->points))
+            break;
     }
     return best;
 }
@@ -352,7 +370,7 @@ Expected<TargetPose> locate_target(const CameraModel& camera, const CameraPoints
             return input_error(Text("point {} is not a finite number", std::to_string(i)), view.id,
                                "leave it out");
     const PointFrame f = frame_of(view.object_mm);
-    if (!(f.extent(1) > 1e-3 * f.extent(0)))
+    if (!(f.extent(1) > kPointsOnALine * f.extent(0)))
         return input_error("the points lie on one line", view.id, "give points that span a plane");
     TargetPose out;
     Matrix6 information;

@@ -6,10 +6,11 @@
 namespace seamwright::detail {
 
 double corner_noise_px(const std::vector<CameraPoints>& views) {
+    constexpr Eigen::Index kFewestForThird = 24, kFewestForFourth = 40;  // corners, by the polynomial's order
     double squares = 0, freedom = 0;
     for (const CameraPoints& view : views) {
         const auto n = static_cast<Eigen::Index>(view.pixel.size());
-        if (n < 24) continue;
+        if (n < kFewestForThird) continue;
         std::vector<Eigen::Vector2d> plate;
         Eigen::Vector2d low(1e300, 1e300), high(-1e300, -1e300);
         for (const auto& p : view.object_mm) {
@@ -19,7 +20,7 @@ double corner_noise_px(const std::vector<CameraPoints>& views) {
         }
         const auto h = homography_dlt(plate, view.pixel);
         if (!h) continue;
-        const int order = n >= 40 ? 4 : 3;
+        const int order = n >= kFewestForFourth ? 4 : 3;
         const Eigen::Index terms = (order + 1) * (order + 2) / 2;
         Eigen::MatrixXd a(n, terms), left(n, 2);
         for (Eigen::Index i = 0; i < n; ++i) {

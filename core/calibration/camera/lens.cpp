@@ -10,6 +10,7 @@
 
 #include "core/calibration/camera/bent_line.h"
 #include "core/calibration/camera/camera.h"
+#include "core/calibration/camera/camera_limits.h"
 #include "core/calibration/camera/projection.h"
 #include "core/calibration/problem.h"
 #include "core/geometry/decompositions.h"
@@ -28,6 +29,10 @@ constexpr double kBentPx = 0.1;     // .. unless it is this small
 constexpr int kCleaningRounds = 8;
 constexpr double kRestShare =
     1e-4;  // of the cost that a further step may still promise: a hundredth of a sigma
+constexpr double kRest_px2 = 1e-18;           // .. or this much, where lines are exact
+constexpr double kLeastVariance_px2 = 1e-12;  // of exact lines
+constexpr double kVarianceSettled = 1e-3;     // relative change that ends the outer rounds
+constexpr double kCostSettled = 1e-8;         // relative gain that ends a solution
 
 template <class T>
 using Plane2 = Eigen::Matrix<T, 2, 1>;
@@ -208,14 +213,14 @@ Solution solve_lens(const Lines& lines, const Intrinsics& k, const std::vector<i
     Eigen::VectorXd held = Eigen::VectorXd::Zero(9);
     held.segment<2>(2) = middle;
     const double freedom = std::max(1.0, lines.points() - 2.0 * lines.count() - static_cast<double>(n));
-    s.variance = std::max(s.squares / lines.points(), 1e-12);
+    s.variance = std::max(s.squares / lines.points(), kLeastVariance_px2);
     for (int outer = 0; outer < 4; ++outer) {
         ceres::Problem problem;
         problem.AddParameterBlock(s.k.data(), 9, linear_manifold(moves));
         lines.add_to(problem, s.k.data());
         problem.AddResidualBlock(new ceres::NormalPrior(std::sqrt(s.variance) / hold_px * centre, held),
                                  nullptr, s.k.data());
-        const Solved solved = solve(problem, {}, 60, 1e-8);
+        const Solved solved = solve(problem, {}, 60, kCostSettled);
         Eigen::VectorXd residuals;
         Eigen::MatrixXd jacobian;
         s.converged = solved.converged && linearise(problem, {s.k.data()}, residuals, jacobian);
@@ -223,12 +228,12 @@ Solution solve_lens(const Lines& lines, const Intrinsics& k, const std::vector<i
         s.information = jacobian.transpose() * jacobian;
         // Steps that end at the lens' fold, where it can no longer be undone, shrink to nothing too.
         const Eigen::VectorXd gradient = jacobian.transpose() * residuals;
-        s.converged =
-            gradient.dot(solve_symmetric(s.information, gradient).col(0)) <= kRestShare * solved.cost + 1e-18;
+        s.converged = gradient.dot(solve_symmetric(s.information, gradient).col(0)) <=
+                      kRestShare * solved.cost + kRest_px2;
         const double before = s.variance;
         s.squares = lines.squares(s.k);
-        s.variance = std::max(s.squares / freedom, 1e-12);
-        if (!s.converged || std::abs(s.variance - before) < 1e-3 * before) break;
+        s.variance = std::max(s.squares / freedom, kLeastVariance_px2);
+        if (!s.converged || std::abs(s.variance - before) < kVarianceSettled * before) break;
     }
     return s;
 }
@@ -336,6 +341,7 @@ void describe_lines(const LensData& data, const Intrinsics& k, Lines& lines,
 // Shift of the image's corners by the distortion, and its sigma by the covariance.
 void state_corners(const LensData& data, const Intrinsics& k, double half, const std::vector<int>& free,
                    LensResult& result) {
+    constexpr double kCentreStep_px = 0.05, kStep = 1e-5;  // of the centre, of a coefficient
     const auto n = static_cast<Eigen::Index>(free.size());
     for (const Eigen::Vector2d& corner :
          {Eigen::Vector2d(0, 0), Eigen::Vector2d(data.width, 0), Eigen::Vector2d(0, data.height),
@@ -348,7 +354,7 @@ void state_corners(const LensData& data, const Intrinsics& k, double half, const
         Eigen::MatrixXd j(2, n);
         for (Eigen::Index i = 0; i < n; ++i) {
             const int p = free[static_cast<std::size_t>(i)];
-            const double h = p < 4 ? 0.05 : 1e-5;
+            const double h = p < 4 ? kCentreStep_px : kStep;
             Intrinsics a = k, b = k;
             a(p) += h, b(p) -= h;
             j.col(i) = (shift(a) - shift(b)) / (2 * h);
@@ -397,7 +403,8 @@ Judgement judged(const LensResult& result, int lines_used, bool converged, bool 
 
 Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& options) {
     using namespace lens_lines;
-    if (data.width < 16 || data.height < 16 || data.width > 100000 || data.height > 100000)
+    if (data.width < kSmallestImage_px || data.height < kSmallestImage_px || data.width > kLargestImage_px ||
+        data.height > kLargestImage_px)
         return input_error(Text("an image of {}x{} pixels is not possible", data.width, data.height), "size",
                            "give [width, height] in pixels");
     LensResult result;
@@ -410,7 +417,8 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
     if (options.full) free.insert(free.end(), {8, 6, 7});
     const auto n = static_cast<Eigen::Index>(free.size());
     const Eigen::Vector2d middle = k.segment<2>(2);
-    const double hold = 0.1 * data.width;  // px, of the centre
+    constexpr double kCentreSigma = 0.1;  // sigma of the centre about the image's middle, of its width
+    const double hold = kCentreSigma * data.width;
     const Intrinsics start = k;
     Solution solved;
     solved.k = start;

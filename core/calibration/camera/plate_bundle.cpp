@@ -17,7 +17,8 @@ std::optional<Eigen::Vector3d> meet_plate(const CameraModel& camera, const Eigen
     if (!ray.allFinite()) return std::nullopt;
     const Eigen::Vector3d normal = camera_from_target.linear().col(2);
     const double along = normal.dot(ray);
-    if (std::abs(along) < 1e-3 * ray.norm()) return std::nullopt;
+    constexpr double kAlongPlate = 1e-3;  // sine between ray and plate, below which they do not meet
+    if (std::abs(along) < kAlongPlate * ray.norm()) return std::nullopt;
     const double base = normal.dot(camera_from_target.translation());
     double s = base / along;
     const auto bent = shape.numbers();
@@ -65,7 +66,8 @@ class Bundle {
     }
 
     void solve(PlateBundleFit& fit) {
-        const Solved solved = seamwright::solve(problem_, views_, 100, 1e-10);
+        constexpr double kGainSettled = 1e-10;  // relative gain in cost that ends it
+        const Solved solved = seamwright::solve(problem_, views_, 100, kGainSettled);
         fit.converged = solved.converged;
         fit.cost = solved.cost;
         fit.normal = normal_blocks(problem_, shared_, views_);

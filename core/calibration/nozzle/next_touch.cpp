@@ -10,6 +10,11 @@ namespace seamwright::nozzle {
 namespace {
 
 constexpr double kTurn_deg = 30;
+constexpr double kLeastInformation = 1e-12;  // 1/mm^2, of a direction that no touch tells
+// What leaving open which of two places the tip has costs, over how far apart a touch sees them and at least this.
+constexpr double kOpenChoice_mm3 = 1e3, kLeastTold_mm = 1e-3;
+// Of what the best so far leaves: what a turn, and another side alone, must bring it to.
+constexpr double kTurnPays = 0.98, kSidePays = 0.999;
 
 struct Side {
     Eigen::Vector3d normal;  // base, from the sphere's centre to the tip
@@ -26,7 +31,7 @@ std::vector<Side> sides() {
 
 double worst_variance(const Eigen::Matrix3d& information) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information, Eigen::EigenvaluesOnly);
-    return 1 / std::max(eigen.eigenvalues()[0], 1e-12);
+    return 1 / std::max(eigen.eigenvalues()[0], kLeastInformation);
 }
 
 }  // namespace
@@ -49,10 +54,10 @@ Text next_touch(const TouchSet& set, const TouchFit& fit) {
             if (fit.other && set.sphere) {
                 // A touch that sees both places alike does not choose between them.
                 const double apart = std::abs(side.normal.dot(attitude * (*fit.other - tip)));
-                left += 1e3 / std::max(apart, 1e-3);
+                left += kOpenChoice_mm3 / std::max(apart, kLeastTold_mm);
             }
             // A turn costs more work than another side.
-            if (!(left < least * (axis >= 0 ? 0.98 : 0.999))) continue;
+            if (!(left < least * (axis >= 0 ? kTurnPays : kSidePays))) continue;
             least = left;
             const Text turned("with the flange turned by {:g} degrees about its {}", kTurn_deg,
                               axis >= 0 ? std::string(1, "XYZ"[axis]) : std::string());

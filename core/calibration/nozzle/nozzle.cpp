@@ -7,6 +7,7 @@
 
 #include "core/calibration/nozzle/next_touch.h"
 #include "core/calibration/nozzle/wrong_touches.h"
+#include "core/calibration/numbers.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/statistics.h"
 #include "core/numbers.h"
@@ -19,22 +20,30 @@ using namespace nozzle;
 constexpr double kGoodTip_mm = 0.3, kUsableTip_mm = 1.0;  // three sigma along the worst direction
 constexpr double kLeastFreedom = 3;                       // below, little checks the touches
 constexpr double kFarthest_mm = 1e5;
-constexpr double kOneAttitude_deg = 5;
+constexpr double kMostPlaceVariance_mm2 = 1e6;
+constexpr double kCovarianceSlack_mm2 = 1e-9;                         // besides kCovarianceSlack
+constexpr double kSmallestSphere_mm = 0.1, kLargestSphere_mm = 1000;  // radius
+constexpr double kSmallestSigma_mm = 1e-4, kLargestSigma_mm = 10;     // of a touch
+// Of chi squared: the programmed tip is another one, and the touches contradict their sigma.
+constexpr double kDeviationTold = 0.99, kContradictionTold = 0.999;
 
 Expected<void> check_target(const NozzleTarget& target, const NozzleOptions& options) {
     if (!target.place_mm.allFinite() || target.place_mm.cwiseAbs().maxCoeff() > kFarthest_mm)
         return input_error("the target's place is not a finite place within 100 m", "target",
                            "give [x, y, z] in millimetres in the robot's base");
     const Eigen::Matrix3d& s = target.covariance_mm2;
-    const bool finite = s.allFinite() && s.cwiseAbs().maxCoeff() < 1e6;
-    const bool symmetric = finite && (s - s.transpose()).cwiseAbs().maxCoeff() <= 1e-9 + 1e-6 * s.norm();
+    const bool finite = s.allFinite() && s.cwiseAbs().maxCoeff() < kMostPlaceVariance_mm2;
+    const bool symmetric = finite && (s - s.transpose()).cwiseAbs().maxCoeff() <=
+                                         kCovarianceSlack_mm2 + kCovarianceSlack * s.norm();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
         finite ? s : Eigen::Matrix3d(Eigen::Matrix3d::Zero()), Eigen::EigenvaluesOnly);
-    if (!symmetric || eigen.eigenvalues()[0] < -1e-9 - 1e-6 * eigen.eigenvalues()[2])
+    if (!symmetric ||
+        eigen.eigenvalues()[0] < -kCovarianceSlack_mm2 - kCovarianceSlack * eigen.eigenvalues()[2])
         return input_error(
             "the covariance of the target's place is none (not symmetric, or a negative variance)", "target",
             "give it in square millimetres as the sensor's measurement states it");
-    if (target.radius_mm && !(*target.radius_mm >= 0.1 && *target.radius_mm <= 1000))
+    if (target.radius_mm &&
+        !(*target.radius_mm >= kSmallestSphere_mm && *target.radius_mm <= kLargestSphere_mm))
         return input_error("the sphere's radius is not between 0.1 and 1000 mm", "target",
                            "give it in millimetres as its certificate says");
     if (!(target.radius_sigma_mm >= 0 && target.radius_sigma_mm < 100))
@@ -50,7 +59,8 @@ Expected<void> check_target(const NozzleTarget& target, const NozzleOptions& opt
 }
 
 Expected<void> check_noise(const NozzleOptions& options) {
-    if (options.sigma_mm && !(*options.sigma_mm >= 1e-4 && *options.sigma_mm <= 10))
+    if (options.sigma_mm &&
+        !(*options.sigma_mm >= kSmallestSigma_mm && *options.sigma_mm <= kLargestSigma_mm))
         return input_error("the sigma of a touch is not between 0.0001 and 10 mm", "sigma_mm",
                            "give it in millimetres, or leave it out: the scatter tells it");
     SEAM_OK(check_repeatability(options.robot));
@@ -147,7 +157,7 @@ HoldOut hold_out(const WrongTouches& found) {
 
 void state_tip(const TouchSet& set, const TouchFit& fit, const NozzleOptions& options, NozzleResult& result) {
     const double student =
-        fit.estimated ? student_quantile(0.975, std::max(1.0, fit.freedom)) / kNormal95 : 1;
+        fit.estimated ? student_quantile(kUpper95, std::max(1.0, fit.freedom)) / kNormal95 : 1;
     const Eigen::Vector3d tip = fit.state.head<3>();
     const Eigen::Matrix3d turn = options.programmed ? Eigen::Matrix3d(options.programmed->linear())
                                                     : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
@@ -167,11 +177,11 @@ void state_tip(const TouchSet& set, const TouchFit& fit, const NozzleOptions& op
         NozzleDeviation d;
         d.mm = tip - options.programmed->translation();
         d.chi_squared = d.mm.dot(result.covariance.ldlt().solve(d.mm));
-        d.limit = chi_squared_quantile(0.99, 3);
+        d.limit = chi_squared_quantile(kDeviationTold, 3);
         d.beyond_chance = !(d.chi_squared <= d.limit);
         result.deviation = d;
     }
-    if (set.sphere && orientation_spread(set.poses).spread_rad[0] < rad_from_deg(kOneAttitude_deg))
+    if (set.sphere && orientation_spread(set.poses).spread_rad[0] < rad_from_deg(kNoSpread_deg))
         result.notices.emplace_back(
             "every touch has the same orientation of the flange: an error of the sphere's place goes into "
             "the "
@@ -190,7 +200,7 @@ void judge(const std::vector<NozzleTouch>& touches, const WrongTouches& found, N
     const TouchFit& fit = found.fit;
     const double three = 3 * result.worst_sigma_mm;
     const bool contradict = !fit.estimated && fit.freedom > 0 &&
-                            fit.misfit > chi_squared_quantile(0.999, std::max(1.0, fit.freedom));
+                            fit.misfit > chi_squared_quantile(kContradictionTold, std::max(1.0, fit.freedom));
     const Text figures("three sigma of the tip {:.3f} mm, the touches scatter by {:.3f} mm", three,
                        result.rms_mm);
     const Text next = next_touch(found.set, fit);

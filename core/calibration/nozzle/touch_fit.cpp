@@ -17,7 +17,13 @@ using Row7 = Eigen::Matrix<double, 1, 7>;
 using Rows7 = Eigen::Matrix<double, 3, 7>;
 
 constexpr double kLeastVariance = 1e-8, kMostVariance = 1e4;  // mm^2: 0.1 um and 100 mm
-constexpr double kApart_mm = 0.5;  // two starts that end nearer found the same place
+constexpr double kApart_mm = 0.5;      // two starts that end nearer found the same place
+constexpr double kAtCentre_mm = 1e-9;  // a tip nearer to the centre has no normal
+// Levenberg and Marquardt.
+constexpr double kDampingStart = 1e-6, kDampingDown = 0.1, kDampingUp = 10, kLeastDamping = 1e-12;
+constexpr double kDampedFloor = 1e-9;  // of the diagonal that is damped
+// A step, or a gain, relative to one and what it changes, that ends it.
+constexpr double kStepSettled = 1e-9, kCostSettled = 1e-13;
 
 // Derivatives of one touch and its weight; of a sphere the first row alone.
 struct Linear {
@@ -51,7 +57,7 @@ Linear linear_at(const TouchSet& set, const Pose& pose, const Vector7& state, do
     const Eigen::Vector3d off = pose * Eigen::Vector3d(state.head<3>()) - centre_at(set, state);
     const double length = off.norm();
     const Eigen::Vector3d normal =
-        length > 1e-9 ? Eigen::Vector3d(off / length) : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
+        length > kAtCentre_mm ? Eigen::Vector3d(off / length) : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
     Linear out = linear_of(set, pose.linear(), normal, state.head<3>(), variance);
     out.e = residual(set, pose, state);
     return out;
@@ -75,7 +81,7 @@ Matrix7 prior() {
 // Levenberg-Marquardt; false: it does not come to rest.
 bool descend(const TouchSet& set, double variance, Vector7& state, double& cost) {
     cost = cost_at(set, state, variance);
-    double damping = 1e-6;
+    double damping = kDampingStart;
     for (int iteration = 0; iteration < 100; ++iteration) {
         Matrix7 h = prior();
         Vector7 g = Vector7::Zero();
@@ -88,21 +94,21 @@ bool descend(const TouchSet& set, double variance, Vector7& state, double& cost)
         bool better = false;
         for (int attempt = 0; attempt < 12 && !better; ++attempt) {
             Matrix7 damped = h;
-            damped.diagonal() += damping * (h.diagonal().array() + 1e-9).matrix();
+            damped.diagonal() += damping * (h.diagonal().array() + kDampedFloor).matrix();
             const Vector7 step = -damped.ldlt().solve(g);
             if (!step.allFinite()) return false;
             const Vector7 next = state + step;
             const double then = cost_at(set, next, variance);
             if (then <= cost) {
                 better = true;
-                const bool still =
-                    step.norm() < 1e-9 * (1 + state.norm()) || cost - then < 1e-13 * (1 + cost);
+                const bool still = step.norm() < kStepSettled * (1 + state.norm()) ||
+                                   cost - then < kCostSettled * (1 + cost);
                 state = next;
                 cost = then;
-                damping = std::max(damping * 0.1, 1e-12);
+                damping = std::max(damping * kDampingDown, kLeastDamping);
                 if (still) return true;
             } else {
-                damping *= 10;
+                damping *= kDampingUp;
             }
         }
         if (!better) return true;  // nothing is downhill any more

@@ -46,6 +46,9 @@ std::vector<Candidate> candidates(bool timed) {
     return list;
 }
 
+// What the words of the candidates say.
+constexpr double kTurned_deg = 20, kAside_mm = 15, kAcross_deg = 40;
+
 // The pass with most profiles, taken again otherwise.
 void add_pass(Data& data, State& state, Change change) {
     std::vector<std::size_t> count(data.motions.size());
@@ -62,7 +65,7 @@ void add_pass(Data& data, State& state, Change change) {
         const Eigen::Vector3d sight =
             (data.motions[of].at(sights.front().time_s) * state.mounting).linear().col(2);
         second.origin = in_base(data, state, sights[sights.size() / 2]);
-        second.axes = Eigen::AngleAxisd(rad_from_deg(40), sight).toRotationMatrix() * second.axes;
+        second.axes = Eigen::AngleAxisd(rad_from_deg(kAcross_deg), sight).toRotationMatrix() * second.axes;
         second.coefficients.setZero();
         edge = state.edges.size();
         state.edges.push_back(second);
@@ -76,17 +79,19 @@ void add_pass(Data& data, State& state, Change change) {
         Pose moved = Pose::Identity();
         const auto turned = [&](Eigen::Index axis) {
             const Eigen::Matrix3d r =
-                Eigen::AngleAxisd(rad_from_deg(20), sensor.linear().col(axis)).toRotationMatrix();
+                Eigen::AngleAxisd(rad_from_deg(kTurned_deg), sensor.linear().col(axis)).toRotationMatrix();
             moved = make_pose(r, p - r * p);
         };
         if (change == Change::turn_x) turned(0);
         if (change == Change::turn_y) turned(1);
         if (change == Change::turn_z) turned(2);
-        if (change == Change::aside) moved.translation() = 15 * sensor.linear().col(0);
-        if (change == Change::raise) moved.translation() = 15 * sensor.linear().col(2);
+        if (change == Change::aside) moved.translation() = kAside_mm * sensor.linear().col(0);
+        if (change == Change::raise) moved.translation() = kAside_mm * sensor.linear().col(2);
         poses.push_back(moved * before);
         times.push_back(change == Change::back ? -s.time_s : s.time_s);
         // Where the laser plane meets the edge there, along its tangent.
+        constexpr double kMeets = 0.05;         // sine between tangent and plane: less runs along it
+        constexpr double kFarthest_mm = 100.0;  // along the tangent
         const double along = curve.axes.col(0).dot(p - curve.origin);
         const CurvePoint c = at(curve, along);
         const Pose back = (moved * sensor).inverse();
@@ -94,7 +99,9 @@ void add_pass(Data& data, State& state, Change change) {
             back * (curve.origin + curve.axes * Eigen::Vector3d(along, c.across.x(), c.across.y()));
         const Eigen::Vector3d tangent =
             back.linear() * (curve.axes * Eigen::Vector3d(1, c.slope.x(), c.slope.y()));
-        const double by = std::abs(tangent.y()) > 0.05 ? std::clamp(-on.y() / tangent.y(), -100.0, 100.0) : 0;
+        const double by = std::abs(tangent.y()) > kMeets
+                              ? std::clamp(-on.y() / tangent.y(), -kFarthest_mm, kFarthest_mm)
+                              : 0;
         const Eigen::Vector3d seen = on + by * tangent;
         s.point = {seen.x(), seen.z()};
         s.edge = edge;
@@ -113,6 +120,8 @@ void add_pass(Data& data, State& state, Change change) {
 }  // namespace
 
 Open open_directions(const Eigen::MatrixXd& seen) {
+    constexpr double kBeside_mm = 0.05;   // of the mounting in an open direction: with less it is latency
+    constexpr double kNamedShare = 0.12;  // of an open direction: smaller parts are not named
     Open open;
     const SymmetricEigen eigen = symmetric_eigen(seen);
     open.weakest_mm = std::sqrt(std::max(0.0, eigen.values(eigen.values.size() - 1)));
@@ -120,14 +129,15 @@ Open open_directions(const Eigen::MatrixXd& seen) {
         const double sigma = std::sqrt(std::max(0.0, eigen.values(i)));
         if (!(sigma > kOnPartOpen_mm)) break;
         const Eigen::VectorXd share = eigen.vectors.col(i).cwiseAbs2();
-        const bool only_latency = share.size() > 6 && sigma * std::sqrt(share.head<6>().sum()) < 0.05;
+        const bool only_latency = share.size() > 6 && sigma * std::sqrt(share.head<6>().sum()) < kBeside_mm;
         (only_latency ? open.latency : open.mounting) = true;
         std::vector<std::pair<double, Eigen::Index>> parts;
         for (Eigen::Index k = 0; k < share.size(); ++k) parts.emplace_back(-share(k), k);
         std::sort(parts.begin(), parts.end());
         std::vector<Text> names;
         for (const auto& [negative, part] : parts)
-            if (names.empty() || (-negative > 0.12 && names.size() < 3)) names.push_back(name_of_part(part));
+            if (names.empty() || (-negative > kNamedShare && names.size() < 3))
+                names.push_back(name_of_part(part));
         open.words.push_back(names.size() == 1 ? Text("{} is not determined", names.front())
                                                : Text("only together are not determined: {}", listed(names)));
     }
@@ -136,6 +146,8 @@ Open open_directions(const Eigen::MatrixXd& seen) {
 
 std::vector<Text> next_passes(const Data& data, const State& state, const Variances& variances,
                               const Eigen::Vector2d& working_point, double enough_mm) {
+    constexpr double kStraight = 1e-6;  // 1/mm, curvature of an edge that is added
+    constexpr double kBetter = 0.98;    // of the best variance so far, below which a pass is the better one
     std::vector<Text> words;
     Data with = data;
     State at = state;
@@ -151,7 +163,7 @@ std::vector<Text> next_passes(const Data& data, const State& state, const Varian
             Data tried = with;
             State there = at;
             add_pass(tried, there, c.change);
-            v.curvature.resize(there.edges.size(), 1e-6);
+            v.curvature.resize(there.edges.size(), kStraight);
             const Blocks blocks = linearised(tried, v, there);
             if (blocks.ss.size() == 0) continue;
             const Eigen::MatrixXd view = view_of(there, working_point, blocks.wanted);
@@ -159,7 +171,7 @@ std::vector<Text> next_passes(const Data& data, const State& state, const Varian
             const Eigen::MatrixXd back = inverse_matrix(view);
             const Eigen::MatrixXd seen = back * e.covariance * back.transpose();
             const double weakest = symmetric_eigen(seen).values(seen.rows() - 1);
-            if (weakest < 0.98 * best) {
+            if (weakest < kBetter * best) {
                 best = weakest, best_words = c.words, best_v = v;
                 best_data = std::move(tried), best_state = std::move(there);
             }

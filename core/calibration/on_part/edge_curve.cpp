@@ -9,12 +9,17 @@ namespace seamwright::on_part {
 namespace {
 constexpr double kCorrelation_mm = 100;
 constexpr double kStartCurvature = 0.03;  // 1/mm: does not bind
+constexpr double kFarthest = 1e6;         // knots from the first one: what an int holds
+constexpr double kLonger = 1.02;          // than its points lie apart; at least a millimetre
+constexpr double kPartRidge = 1e-9;       // keeps a part without points solvable
+constexpr double kPointWeight = 100;      // 1/mm^2: points to 0.1 mm
 }  // namespace
 
 SplineAt spline_at(const EdgeCurve& edge, double s) {
     SplineAt b;
     const double x = (s - edge.low) / edge.step;
-    b.first = std::clamp(static_cast<int>(std::floor(std::clamp(x, -1e6, 1e6))), 0, edge.segments - 1);
+    b.first =
+        std::clamp(static_cast<int>(std::floor(std::clamp(x, -kFarthest, kFarthest))), 0, edge.segments - 1);
     const double u = x - b.first, v = 1 - u;
     b.value = {v * v * v / 6, (3 * u * u * u - 6 * u * u + 4) / 6,
                (-3 * u * u * u + 3 * u * u + 3 * u + 1) / 6, u * u * u / 6};
@@ -61,20 +66,20 @@ EdgeCurve curve_through(const std::vector<Eigen::Vector3d>& points, double knot_
         const double s = edge.axes.col(0).dot(p - edge.origin);
         low = std::min(low, s), high = std::max(high, s);
     }
-    const double length = std::max(high - low, 1.0) * 1.02;
+    const double length = std::max(high - low, 1.0) * kLonger;
     edge.segments = std::clamp(static_cast<int>(std::ceil(length / knot_mm)), 1, most);
     edge.step = length / edge.segments;
     edge.low = 0.5 * (low + high) - 0.5 * length;
     const int n = edge.per_axis();
     const Eigen::MatrixXd prior = curvature_rows(edge) / kStartCurvature;
-    Eigen::MatrixXd normal = prior.transpose() * prior + 1e-9 * Eigen::MatrixXd::Identity(n, n);
+    Eigen::MatrixXd normal = prior.transpose() * prior + kPartRidge * Eigen::MatrixXd::Identity(n, n);
     Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n, 2);
     for (const auto& p : points) {
         const Eigen::Vector3d local = edge.axes.transpose() * (p - edge.origin);
         const SplineAt b = spline_at(edge, local.x());
         const Eigen::Map<const Eigen::Vector4d> value(b.value.data());
-        normal.block<4, 4>(b.first, b.first) += 100 * value * value.transpose();
-        right.block<4, 2>(b.first, 0) += 100 * value * local.tail<2>().transpose();
+        normal.block<4, 4>(b.first, b.first) += kPointWeight * value * value.transpose();
+        right.block<4, 2>(b.first, 0) += kPointWeight * value * local.tail<2>().transpose();
     }
     const Eigen::MatrixXd solved = solve_symmetric(normal, right);
     edge.coefficients.resize(2L * n);

@@ -13,17 +13,22 @@
 namespace seamwright::on_part {
 namespace {
 
+// Eigenvalues that a covariance has at least: scaled to unit diagonal, and of a profile's point.
+constexpr double kLeastScaled = 1e-12, kLeastAcross_mm2 = 1e-10;
+constexpr double kAlongEdge = 0.01;    // of its sigma: no point is known better across its edge
+constexpr double kCostSettled = 1e-9;  // relative gain that ends a solution
+
 // Whitening matrices of covariances: their inverses' roots.
 Matrix6 root_of_inverse(const Matrix6& covariance) {
     const Vector6 scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
     const SymmetricEigen eigen = symmetric_eigen(scale.asDiagonal() * covariance * scale.asDiagonal());
-    return eigen.values.cwiseMax(1e-12).cwiseSqrt().cwiseInverse().asDiagonal() * eigen.vectors.transpose() *
-           scale.asDiagonal();
+    return eigen.values.cwiseMax(kLeastScaled).cwiseSqrt().cwiseInverse().asDiagonal() *
+           eigen.vectors.transpose() * scale.asDiagonal();
 }
 Eigen::Matrix2d root_of_inverse2(const Eigen::Matrix2d& covariance) {
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
     eigen.computeDirect(covariance);
-    return eigen.eigenvalues().cwiseMax(1e-10).cwiseSqrt().cwiseInverse().asDiagonal() *
+    return eigen.eigenvalues().cwiseMax(kLeastAcross_mm2).cwiseSqrt().cwiseInverse().asDiagonal() *
            eigen.eigenvectors().transpose();
 }
 
@@ -44,8 +49,8 @@ class Profile final : public ceres::CostFunction {
         a << by_sensor.col(0), by_sensor.col(2);
         // Where the plane runs along the edge its point is not known along it: not a whole sigma less than isotropic.
         const Eigen::Matrix2d covariance = a * sight.covariance * a.transpose();
-        const double floor = 0.01 * sight.covariance.trace();
-        white_ = root_of_inverse2(covariance + floor * 0.01 * Eigen::Matrix2d::Identity()) / white;
+        const double floor = kAlongEdge * sight.covariance.trace();
+        white_ = root_of_inverse2(covariance + floor * kAlongEdge * Eigen::Matrix2d::Identity()) / white;
         set_num_residuals(2);
         *mutable_parameter_block_sizes() = {7, 7, static_cast<int>(edge_.coefficients.size()), 1};
     }
@@ -240,7 +245,7 @@ double solve_state(const Data& data, const Variances& variances, const SolveOpti
     std::vector<double*> views;
     if (options.passes)
         for (PoseBlock& p : unknowns.passes) views.push_back(p.data());
-    const Solved solved = solve(unknowns.problem, views, options.most_iterations, 1e-9);
+    const Solved solved = solve(unknowns.problem, views, options.most_iterations, kCostSettled);
     if (!std::isfinite(solved.cost)) return kInfinity;
     unknowns.into(state);
     return solved.cost;

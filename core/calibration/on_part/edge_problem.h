@@ -28,10 +28,13 @@ struct Data {
     std::optional<MountingPrior> prior;
 };
 
+// Between a pass's shift and its turn: 1 mm goes with a third of a degree.
+inline constexpr double kPassLever_mm = 172;
+
 // q of the passes in mm and rad, kappa by edge; the white noise is relative to the sights' covariances.
 struct Variances {
     double white = 1;
-    double pass_mm = 0.02, pass_rad = 0.02 / 172;
+    double pass_mm = 0.02, pass_rad = 0.02 / kPassLever_mm;
     std::vector<double> curvature;
 };
 

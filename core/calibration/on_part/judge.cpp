@@ -12,7 +12,13 @@ namespace {
 
 constexpr double kAsGood = 25;  // difference of squares below which a second place fits as well
 constexpr double kApart_mm = 3, kApart_rad = 0.05;
-constexpr double kSteepest = 1.73;  // slope against the chord: 60 degrees
+constexpr double kSteepest = 1.73;         // slope against the chord: 60 degrees
+constexpr double kPoorPass_mm = 0.35;      // by which passes contradict one another, beyond
+constexpr double kHoldOutTimes = 3;        // what passes not used may miss by over what is expected
+constexpr double kRobotTimes = 4;          // .. over what the stated robot explains
+constexpr double kLikelier = 0.5;          // a straight edge, from that probability on
+constexpr double kLeastOfLatency = 1e-12;  // guards the quotient
+constexpr double kMoved = 0.99;            // of chi squared
 
 PoseResidual residual_of(const Refined& r, const Names& names, std::size_t pass, const Data& given,
                          int& wrong) {
@@ -81,7 +87,7 @@ std::vector<PartEdge> edges_of(const Refined& r, const Names& names, bool& steep
     for (std::size_t e = 0; e < r.data.edges; ++e) {
         PartEdge one;
         one.id = names.edges[e];
-        one.straight = r.estimate.straight[e] > 0.5;
+        one.straight = r.estimate.straight[e] > kLikelier;
         one.curvature_per_mm = r.variances.curvature[e];
         std::vector<bool> passes(r.data.motions.size());
         double sum = 0, n = 0, low = kInfinity, high = -kInfinity;
@@ -129,12 +135,12 @@ void verdict_of(OnPartResult& result, const Text& left_out_text) {
         result.advice.empty() ? Text("make more passes, from more attitudes") : result.advice.front();
     if (three > kOnPartUsable_mm) {
         j = {Verdict::poor, Text("the passes tell too little: {}", known), cure};
-    } else if (result.pass_error_mm > 0.35) {
+    } else if (result.pass_error_mm > kPoorPass_mm) {
         j = {Verdict::poor, Text("the passes contradict one another by {:.2f} mm", result.pass_error_mm),
              "check that the part stands still, that every pass names its edge, and the robot's poses"};
     } else if (h.folds == 0) {
         j = {Verdict::usable, Text("{}; no pass can be left out to verify it", known), cure};
-    } else if (h.rms_mm > 3 * expected) {
+    } else if (h.rms_mm > kHoldOutTimes * expected) {
         j = {Verdict::poor,
              Text("passes not used lie {:.3f} mm off, expected were {:.3f} mm", h.rms_mm, expected),
              "check that the part stands still, that every pass names its edge, and the robot's poses"};
@@ -175,7 +181,7 @@ BumpTest bump_of(const Refined& r, const MountingPrior& prior, const Pose& answe
     Eigen::MatrixXd info = r.estimate.information;
     Eigen::VectorXd g = r.estimate.gradient;
     if (info.rows() > 6) {  // the latency goes with the data
-        const double tau = std::max(info(6, 6), 1e-12);
+        const double tau = std::max(info(6, 6), kLeastOfLatency);
         g = (g.head(6) - info.col(6).head(6) * (g(6) / tau)).eval();
         info = (info.topLeftCorner(6, 6) - info.col(6).head(6) * info.row(6).head(6) / tau).eval();
     }
@@ -196,7 +202,7 @@ BumpTest bump_of(const Refined& r, const MountingPrior& prior, const Pose& answe
         const Eigen::VectorXd d = lambda.cwiseInverse().asDiagonal() * (v.transpose() * q);
         const Eigen::MatrixXd c = v.transpose() * p * v + Eigen::MatrixXd(lambda.cwiseInverse().asDiagonal());
         test.chi_squared = d.dot(solve_symmetric(c, d).col(0));
-        test.limit = chi_squared_quantile(0.99, static_cast<double>(known.size()));
+        test.limit = chi_squared_quantile(kMoved, static_cast<double>(known.size()));
         test.moved = test.chi_squared > test.limit;
     }
     const Eigen::Vector3d m = in_sensor(r.working_point);
@@ -288,7 +294,7 @@ OnPartResult judge(const Refined& r, const Data& given, const Names& names, cons
     result.report.hold_out = verify(r);
     verdict_of(result, left_out_text);
     if (options.robot && result.rms_mm > 0 && result.report.hold_out.folds > 1 &&
-        result.report.hold_out.rms_mm > 4 * std::hypot(result.noise_mm, 2 * result.pass_error_mm))
+        result.report.hold_out.rms_mm > kRobotTimes * std::hypot(result.noise_mm, 2 * result.pass_error_mm))
         result.notices.emplace_back(
             "the passes differ by more than the robot's stated repeatability explains");
     return result;

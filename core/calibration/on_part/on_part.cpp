@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/calibration/numbers.h"
 #include "core/calibration/on_part/judge.h"
 #include "core/calibration/on_part/start.h"
 #include "core/calibration/pose_set.h"
@@ -16,6 +17,11 @@ using namespace on_part;
 
 constexpr double kNoise_mm = 0.03;  // of a point whose covariance is not known; its scale is estimated
 constexpr std::size_t kFewestProfiles = 4;
+constexpr double kLatest_s = 1e12, kFarthestEdge_mm = 1e4;
+constexpr double kLeastVariance_mm2 = 1e-12, kMostVariance_mm2 = 1e4;  // of a point, where it is known
+constexpr double kSingular = 1e-12;  // eigenvalue of a prior scaled to unit diagonal, up to that
+constexpr double kIsotropic = 1e-4;  // of a covariance's trace, added: no point is exact in one direction
+constexpr double kLowerCost = 1e-6;  // by which a rival must be lower to take its place
 
 Text place(const EdgePass& pass) {
     return Text("pass '{}'", pass.id);
@@ -30,16 +36,17 @@ Expected<void> check_pass(const EdgePass& pass) {
         const EdgeProfile& p = pass.profiles[i];
         poses.push_back(p.base_from_flange);
         ids.push_back(std::to_string(i));
-        if (!std::isfinite(p.time_s) || std::abs(p.time_s) > 1e12)
+        if (!std::isfinite(p.time_s) || std::abs(p.time_s) > kLatest_s)
             return input_error(Text("the time of profile {} is no time", i), place(pass), "give seconds");
-        if (!p.point_mm.allFinite() || p.point_mm.norm() > 1e4)
+        if (!p.point_mm.allFinite() || p.point_mm.norm() > kFarthestEdge_mm)
             return input_error(Text("the point of profile {} is none within 10 m", i), place(pass),
                                "leave out profiles that saw no edge");
         if (!p.covariance_mm2.allFinite() ||
-            (p.covariance_mm2 - p.covariance_mm2.transpose()).norm() > 1e-6 * p.covariance_mm2.norm() ||
+            (p.covariance_mm2 - p.covariance_mm2.transpose()).norm() >
+                kCovarianceSlack * p.covariance_mm2.norm() ||
             p.covariance_mm2.determinant() < 0 || p.covariance_mm2.trace() < 0 ||
-            p.covariance_mm2.norm() > 1e4 ||
-            (p.covariance_mm2.norm() > 0 && !(p.covariance_mm2.trace() > 1e-12)))
+            p.covariance_mm2.norm() > kMostVariance_mm2 ||
+            (p.covariance_mm2.norm() > 0 && !(p.covariance_mm2.trace() > kLeastVariance_mm2)))
             return input_error(Text("the covariance of profile {} is none", i), place(pass),
                                "give a symmetric 2 x 2 matrix in mm^2, or none");
         if (i > 0 && !(p.time_s > pass.profiles[i - 1].time_s))
@@ -76,11 +83,12 @@ Expected<void> check_passes(const std::vector<EdgePass>& passes, const OnPartOpt
         SEAM_OK(pose_from_matrix(options.prior->flange_from_sensor.matrix(), "prior"));
         const Matrix6& c = options.prior->covariance;
         const Vector6 diagonal = c.diagonal();
-        if (!c.allFinite() || !(diagonal.minCoeff() > 0) || (c - c.transpose()).norm() > 1e-6 * c.norm())
+        if (!c.allFinite() || !(diagonal.minCoeff() > 0) ||
+            (c - c.transpose()).norm() > kCovarianceSlack * c.norm())
             return input_error("the covariance is none", "prior",
                                "give a symmetric 6 x 6 matrix, mm and rad, positive definite");
         const Vector6 scale = diagonal.cwiseSqrt().cwiseInverse();
-        if (!(symmetric_eigen(scale.asDiagonal() * c * scale.asDiagonal()).values(0) > 1e-12))
+        if (!(symmetric_eigen(scale.asDiagonal() * c * scale.asDiagonal()).values(0) > kSingular))
             return input_error("the covariance is not positive definite", "prior",
                                "give a symmetric 6 x 6 matrix, mm and rad, positive definite");
     }
@@ -118,7 +126,7 @@ Data data_of(const std::vector<EdgePass>& passes, const OnPartOptions& options, 
                     !names.excluded.back()};
             if (!(s.covariance.trace() > 0))
                 s.covariance = kNoise_mm * kNoise_mm * Eigen::Matrix2d::Identity();
-            s.covariance.diagonal().array() += 1e-4 * s.covariance.trace();
+            s.covariance.diagonal().array() += kIsotropic * s.covariance.trace();
             data.sights.push_back(s);
         }
         data.motions.emplace_back(std::move(times), std::move(poses));
@@ -167,7 +175,7 @@ std::optional<Found> find(const Data& data, const std::vector<State>& begun, con
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(from));
     for (int round = 0; round < 3; ++round) {
         found.rivals = rivals_of(found.refined, others);
-        if (found.rivals.empty() || !(found.rivals.front().cost < found.refined.cost - 1e-6)) break;
+        if (found.rivals.empty() || !(found.rivals.front().cost < found.refined.cost - kLowerCost)) break;
         Refined better = refine(data, found.rivals.front().state, options.robot);
         if (!better.solved) break;
         others.push_back(found.refined.state);

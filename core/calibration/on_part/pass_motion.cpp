@@ -9,6 +9,9 @@ namespace {
 
 constexpr std::size_t kWindow = 7;
 constexpr double kBeyond = 0.02;  // of an interval
+// A motion is noisy when the squares of its sixth differences are beyond so many times those of its fourth, and beyond
+// those of white noise of this variance, 924 times as large.
+constexpr double kNoisyTimes = 4, kNoisy_mm2 = 1e-6, kWhiteSixth = 924;
 
 Vector6 displacement(const Pose& from, const Pose& to) {
     const Pose d = from.inverse() * to;
@@ -30,7 +33,8 @@ bool noisy(const std::vector<Pose>& poses) {
         fourth += (p(1) - 4 * p(2) + 6 * p(3) - 4 * p(4) + p(5)).squaredNorm();
         sixth += (p(0) - 6 * p(1) + 15 * p(2) - 20 * p(3) + 15 * p(4) - 6 * p(5) + p(6)).squaredNorm();
     }
-    return sixth > 4 * fourth && sixth > 1e-6 * 924 * static_cast<double>(poses.size());
+    return sixth > kNoisyTimes * fourth &&
+           sixth > kNoisy_mm2 * kWhiteSixth * static_cast<double>(poses.size());
 }
 
 }  // namespace

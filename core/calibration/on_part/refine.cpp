@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/calibration/numbers.h"
 #include "core/calibration/on_part/advice.h"
 #include "core/calibration/on_part/start.h"
 #include "core/calibration/statistics.h"
@@ -20,13 +21,18 @@ constexpr double kLeastNoise_mm =
     0.002;  // no feature point is better; keeps exact data from promising the impossible
 constexpr double kWrongProfile = 5.0;  // sigma
 constexpr double kWrongPass = 35;      // chi squared of six, the 99.9995 % point: the largest of many
-constexpr double kRayleighMedian = 1.1774;
+constexpr double kFirstPass_mm = 0.06, kFirstCurvature = 0.01;  // the variances that are guessed first
+// A whole pass lies elsewhere beyond this, and this many times the middling pass's median distance.
+constexpr double kGross_mm = 0.6, kGrossTimes = 8;
+constexpr double kWhiteSettled = 0.02;  // relative change of the white noise that ends the rounds
+constexpr double kFewTimes = 1.5;       // what an estimate from few passes may be too small by
+constexpr double kExactRobot_mm = 1e-4, kExactRobot_rad = 1e-7;  // no stated robot is better
 
 Variances first_guess(std::size_t edges) {
     Variances v;
     v.white = 1;
-    v.pass_mm = 0.06, v.pass_rad = 0.06 / 172;
-    v.curvature.assign(edges, 0.01);
+    v.pass_mm = kFirstPass_mm, v.pass_rad = kFirstPass_mm / kPassLever_mm;
+    v.curvature.assign(edges, kFirstCurvature);
     return v;
 }
 
@@ -55,7 +61,7 @@ std::vector<bool> gross_passes(const Data& data, const State& state) {
     std::vector<bool> gross(off.size());
     for (auto& list : off)
         if (!list.empty()) medians.push_back(median(list));
-    const double limit = std::max(0.6, 8 * median(medians));
+    const double limit = std::max(kGross_mm, kGrossTimes * median(medians));
     for (std::size_t p = 0; p < off.size(); ++p) gross[p] = !off[p].empty() && median(off[p]) > limit;
     if (std::count(gross.begin(), gross.end(), true) * 4 > static_cast<std::ptrdiff_t>(medians.size()))
         gross.assign(off.size(), false);
@@ -123,7 +129,7 @@ bool settle(Refined& r, const Given& how) {
         const Variances before = r.variances;
         r.variances = estimate(blocks, r.data, r.state, before, given).variances;
         r.variances.white = std::max(r.variances.white, floor);
-        if (round > 1 && std::abs(r.variances.white / before.white - 1) < 0.02 &&
+        if (round > 1 && std::abs(r.variances.white / before.white - 1) < kWhiteSettled &&
             r.variances.pass_mm == before.pass_mm && r.variances.curvature == before.curvature)
             break;
     }
@@ -152,7 +158,7 @@ std::optional<std::size_t> contradicting(const Refined& r, const Given& how) {
         const Estimate others =
             estimate(without_pass(blocks, r.data, p), r.data, r.state, r.variances, given);
         Variances v = others.variances;
-        if (!how.robot && used < 8) v.pass_mm *= 1.5, v.pass_rad *= 1.5;  // estimated from few
+        if (!how.robot && used < 8) v.pass_mm *= kFewTimes, v.pass_rad *= kFewTimes;  // estimated from few
         const double bound = at_variances(blocks, r.data, r.state, v, given.view).rr;
         const double loose = at_variances(blocks, r.data, r.state, v, given.view, p).rr;
         if (bound - loose > kWrongPass * (1 + 6.0 / used)) return p;
@@ -172,8 +178,8 @@ Refined refine(const Data& data, const State& start, const std::optional<RobotRe
     Given how;
     if (robot) {
         how.robot = true;
-        r.variances.pass_mm = std::max(robot->sigma_mm, 1e-4);
-        r.variances.pass_rad = std::max(robot->sigma_rad, 1e-7);
+        r.variances.pass_mm = std::max(robot->sigma_mm, kExactRobot_mm);
+        r.variances.pass_rad = std::max(robot->sigma_rad, kExactRobot_rad);
     }
     // Wrong profiles before anything is estimated from them.
     State first = r.state;
@@ -210,7 +216,7 @@ Refined refine(const Data& data, const State& start, const std::optional<RobotRe
             std::count_if(blocks.rows.begin(), blocks.rows.end(), [](int n) { return n > 0; });
         const double freedom = 4.0 * static_cast<double>(passes) - static_cast<double>(blocks.wanted) -
                                4.0 * static_cast<double>(data.edges);
-        const double student = student_quantile(0.975, std::max(2.0, freedom)) / normal_quantile(0.975);
+        const double student = student_quantile(kUpper95, std::max(2.0, freedom)) / normal_quantile(kUpper95);
         r.estimate.covariance *= student * student;
     }
     r.solved = true;

@@ -14,6 +14,15 @@ namespace {
 
 constexpr int kAttitudes = 400;
 constexpr std::size_t kRefined = 12, kMost = 140;
+constexpr double kPsi = 1.533751168755204288118041;  // super-Fibonacci spirals, beside sqrt(2)
+constexpr double kWeightSquares = 9;                 // a weight is halved at three times the median distance
+constexpr double kLeastMedian_mm2 = 1e-6;
+constexpr double kUnit_mm = 50;                      // of the way along an edge, in the powers of its curve
+constexpr double kNearFlange = 1e-6, kRidge = 1e-9;  // by ray: on the shift, on all unknowns
+constexpr double kNowhere_mm2 = 1e12;                // squared distance that is not finite
+// Thinned data: white noise in sigmas, curvature 1/mm, knots, loss.
+constexpr double kRoughWhite = 3, kRoughCurvature = 0.01, kRoughKnot_mm = 25, kRoughRobust_mm = 0.3;
+constexpr double kBegunApart_deg = 15, kApart_deg = 3;  // of attitudes, before and after they are solved
 
 // A thinned sight with its pose at the start's latency.
 struct Ray {
@@ -26,7 +35,7 @@ std::vector<Eigen::Matrix3d> attitudes() {
     std::vector<Eigen::Matrix3d> list;
     for (int i = 0; i < kAttitudes; ++i) {
         const double s = i + 0.5, r = std::sqrt(s / kAttitudes), q = std::sqrt(1 - s / kAttitudes);
-        const double a = 2 * kPi * s / std::sqrt(2.0), b = 2 * kPi * s / 1.533751168755204288118041;
+        const double a = 2 * kPi * s / std::sqrt(2.0), b = 2 * kPi * s / kPsi;
         list.push_back(Eigen::Quaterniond(q * std::cos(b), r * std::sin(a), r * std::cos(a), q * std::sin(b))
                            .toRotationMatrix());
     }
@@ -87,7 +96,7 @@ class Shift {
             for (std::size_t k = 0; k < rays_.size(); ++k) sum += std::sqrt(residual2_[k]);
             trial.cost = sum;
             std::vector<double> off(residual2_);
-            const double scale2 = 9 * std::max(1e-6, median(off));
+            const double scale2 = kWeightSquares * std::max(kLeastMedian_mm2, median(off));
             for (std::size_t k = 0; k < rays_.size(); ++k) weights[k] = 1 / (1 + residual2_[k] / scale2);
             std::vector<std::vector<Eigen::Vector3d>> points(edges_);
             for (const Ray& r : rays_) points[r.edge].push_back(r.pose * (turn * r.point + shift));
@@ -114,7 +123,7 @@ class Shift {
             across.col(1) = d.cross(across.col(0));
             const Eigen::Vector3d fixed =
                 r.pose.linear() * (turn * r.point) + (r.pose.translation() - middle_[r.edge]);
-            const double s = d.dot(fixed + r.pose.linear() * shift) / 50;
+            const double s = d.dot(fixed + r.pose.linear() * shift) / kUnit_mm;
             row.by_shift = across.transpose() * r.pose.linear();
             row.right = -across.transpose() * fixed;
             row.powers = {1, s, s * s};
@@ -130,8 +139,8 @@ class Shift {
         }
         normal_.bottomLeftCorner(n - 3, 3) = normal_.topRightCorner(3, n - 3).transpose();
         // Of a start alone: what these passes do not tell stays near the flange.
-        normal_.diagonal().head<3>().array() += 1e-6 * static_cast<double>(rays_.size());
-        normal_.diagonal().array() += 1e-9 * static_cast<double>(rays_.size());
+        normal_.diagonal().head<3>().array() += kNearFlange * static_cast<double>(rays_.size());
+        normal_.diagonal().array() += kRidge * static_cast<double>(rays_.size());
         const Eigen::VectorXd x = Eigen::LDLT<Eigen::MatrixXd>(normal_).solve(right_);
         shift = x.head<3>();
         residual2_.resize(rays_.size());
@@ -140,7 +149,7 @@ class Shift {
             for (Eigen::Index axis = 0; axis < 2; ++axis)
                 off(axis) -= rows_[k].powers.dot(
                     x.segment<3>(3 + 6 * static_cast<Eigen::Index>(rays_[k].edge) + 3 * axis));
-            residual2_[k] = std::isfinite(off.squaredNorm()) ? off.squaredNorm() : 1e12;
+            residual2_[k] = std::isfinite(off.squaredNorm()) ? off.squaredNorm() : kNowhere_mm2;
         }
     }
 
@@ -197,8 +206,8 @@ std::vector<State> starts(const Data& data) {
     std::sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) { return a.cost < b.cost; });
 
     Variances rough;
-    rough.white = 3;
-    rough.curvature.assign(data.edges, 0.01);
+    rough.white = kRoughWhite;
+    rough.curvature.assign(data.edges, kRoughCurvature);
     struct Solved {
         State state;
         double cost;
@@ -207,19 +216,20 @@ std::vector<State> starts(const Data& data) {
     std::vector<Pose> begun;
     for (const Trial& trial : trials) {
         if (begun.size() >= kRefined) break;
-        if (std::any_of(begun.begin(), begun.end(),
-                        [&](const Pose& p) { return angle_rad(p, trial.mounting) < rad_from_deg(15); }))
+        if (std::any_of(begun.begin(), begun.end(), [&](const Pose& p) {
+                return angle_rad(p, trial.mounting) < rad_from_deg(kBegunApart_deg);
+            }))
             continue;
         begun.push_back(trial.mounting);
-        State state = start_at(thin, trial.mounting, latency, 25, 4);
-        const double cost = solve_state(thin, rough, {0.3, false, 25}, state);
+        State state = start_at(thin, trial.mounting, latency, kRoughKnot_mm, 4);
+        const double cost = solve_state(thin, rough, {kRoughRobust_mm, false, 25}, state);
         if (std::isfinite(cost)) solved.push_back({std::move(state), cost});
     }
     std::sort(solved.begin(), solved.end(), [](const Solved& a, const Solved& b) { return a.cost < b.cost; });
     std::vector<State> apart;
     for (Solved& s : solved) {
         if (std::none_of(apart.begin(), apart.end(), [&](const State& other) {
-                return angle_rad(other.mounting, s.state.mounting) < rad_from_deg(3);
+                return angle_rad(other.mounting, s.state.mounting) < rad_from_deg(kApart_deg);
             }))
             apart.push_back(std::move(s.state));
         if (apart.size() == 4) break;

@@ -15,8 +15,10 @@ constexpr std::array kPass_mm = {0.002, 0.005, 0.01, 0.02, 0.035, 0.06, 0.1, 0.2
 constexpr std::array kCurvature = {1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2};
 constexpr double kUnseen = 1e-6;  // information of a coefficient that no profile sees: sigma 1 m
 constexpr double kLoose = 1e-6;   // of the precision: q is a thousand times as large
-constexpr double kRad_per_mm = 1.0 / 172;
-constexpr double kClosed = 1e-6;  // information 1/mm^2 below which a direction takes no step: sigma 1 m
+constexpr double kRad_per_mm = 1.0 / kPassLever_mm;
+constexpr double kClosed = 1e-6;        // information 1/mm^2 below which a direction takes no step: sigma 1 m
+constexpr double kLeastOpen = 1e-12;    // of that information in a covariance: no direction is more open
+constexpr double kLeastScale2 = 1e-12;  // of the white noise: no less, whatever is given
 
 // Passes eliminated for one q.
 struct Shared {
@@ -111,7 +113,7 @@ class Likelihood {
           state_(state),
           view_(view),
           scale_free_(scale_free),
-          least2_(std::max(1e-12, least * least)) {
+          least2_(std::max(kLeastScale2, least * least)) {
         for (const EdgeCurve& e : state.edges) {
             const Eigen::MatrixXd rows = curvature_rows(e);
             penalties_.push_back(rows.transpose() * rows);
@@ -159,7 +161,7 @@ class Likelihood {
         answer.rr = rr;
         answer.step = view_ * step;
         answer.edges = -m.base - m.follow * answer.step;
-        const Eigen::VectorXd inverse = eigen.values.cwiseMax(1e-12).cwiseInverse();
+        const Eigen::VectorXd inverse = eigen.values.cwiseMax(kLeastOpen).cwiseInverse();
         answer.covariance = view_ * eigen.vectors * (answer.scale2 * inverse).asDiagonal() *
                             eigen.vectors.transpose() * view_.transpose();
         return answer;
@@ -294,6 +296,7 @@ Estimate at_variances(const Blocks& blocks, const Data& data, const State& state
 
 double neighbours_factor(const Blocks& blocks, const Data& data) {
     constexpr std::size_t kLags = 6;
+    constexpr int kFewestNeighbours = 10;  // to tell a correlation
     const std::size_t n = blocks.sight_of.size();
     const double total = blocks.residuals.squaredNorm() / static_cast<double>(std::max<std::size_t>(1, n));
     double factor = 1;
@@ -306,7 +309,7 @@ double neighbours_factor(const Blocks& blocks, const Data& data) {
                        .dot(blocks.residuals.segment<2>(static_cast<Eigen::Index>(2 * (k + lag))));
             ++pairs;
         }
-        if (pairs < 10) break;
+        if (pairs < kFewestNeighbours) break;
         const double correlation = sum / pairs / total;
         if (correlation < 2 / std::sqrt(2.0 * pairs)) break;
         factor += 2 * correlation;

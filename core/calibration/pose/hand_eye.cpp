@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -21,6 +22,14 @@ using namespace hand_eye;
 
 constexpr double kUndetermined_mm = 20.0, kUndetermined_rad = 0.05;
 constexpr double kGoodHand_mm = 1.0, kGoodHand_deg = 0.3, kUsableHand_mm = 3.0, kUsableHand_deg = 1.0;
+constexpr double kShortestLever_mm = 50.0;  // that angles are weighed by in a start
+// A start is looked for in subsets where some pair is off by so many times the middle one, and more than rounding.
+constexpr double kGrossTimes = 3, kRounding_mm = 1e-9;
+constexpr double kWrongTold = 0.9999;  // of chi squared: a pair beyond contradicts the others
+// Pairs beyond any doubt: their square in robust sigmas, and either distance from the others.
+constexpr double kNoDoubt = 400, kNoDoubt_mm = 0.1, kNoDoubt_rad = 1e-3;
+constexpr std::array kRobustScales{100.0, 30.0, 30.0};  // Geman and McClure, one after the other
+constexpr double kOtherMountFits = 0.2;  // of the rms: what the other mount must fit better than
 
 // Sum of absolute residuals with angles on the lever of the camera's distance: one number for all closed
 // forms.
@@ -56,7 +65,7 @@ Began best_start(const Chain& chain) {
         used.push_back(i);
         lever += chain.c[i].translation().norm();
     }
-    lever = std::max(50.0, lever / static_cast<double>(used.size()));
+    lever = std::max(kShortestLever_mm, lever / static_cast<double>(used.size()));
     Began best;
     const auto consider = [&](const std::vector<size_t>& pick) {
         const Chain part = subset(chain, pick);
@@ -74,7 +83,7 @@ Began best_start(const Chain& chain) {
         each.push_back(std::hypot(residual_mm(chain, i, best.closed.x, best.closed.y).norm(),
                                   lever * residual_rad(chain, i, best.closed.x, best.closed.y).norm()));
     const double middle = median(each);
-    if (*std::max_element(each.begin(), each.end()) < 3 * middle + 1e-9) return best;
+    if (*std::max_element(each.begin(), each.end()) < kGrossTimes * middle + kRounding_mm) return best;
     std::mt19937 random(11u);
     for (int trial = 0; trial < 60; ++trial) {
         std::vector<size_t> pick = used;
@@ -87,10 +96,10 @@ Began best_start(const Chain& chain) {
 
 std::vector<Text> degenerate_words(const std::vector<Pose>& base_from_flange) {
     const auto spread = orientation_spread(base_from_flange);
-    if (spread.spread_rad[0] < rad_from_deg(5))
+    if (spread.spread_rad[0] < rad_from_deg(kNoSpread_deg))
         return {
             "all poses share one orientation: rotate the flange about two of its axes by 20 degrees or more"};
-    if (spread.spread_rad[1] < rad_from_deg(5))
+    if (spread.spread_rad[1] < rad_from_deg(kNoSpread_deg))
         return {Text(
             "the poses turn about the flange's {} axis only: rotate about another axis by 20 degrees or more",
             axis_name(spread.axes.col(0)))};
@@ -164,7 +173,7 @@ void leave_out_wrong_pairs(Chain& chain, Pose& x, Pose& y, Scales& scales) {
         const double n = static_cast<double>(without.used_count());
         const double redundancy = 6 * n - 12;
         const double f = pair_square(without, worst, x_without, y_without, scales_without) / 6;
-        const double limit = (chi_squared_quantile(0.9999, 6) / 6) * (1 + 12 / redundancy) * (1 + 6 / n);
+        const double limit = (chi_squared_quantile(kWrongTold, 6) / 6) * (1 + 12 / redundancy) * (1 + 6 / n);
         if (f < limit) return;
         chain = without;
         x = x_without;
@@ -218,7 +227,7 @@ Text likely_mistake(Mount mount, const std::vector<HandEyePair>& pairs, const st
     double squares = 0;
     for (size_t i = 0; i < chain.size(); ++i)
         if (used[i]) squares += residual_mm(chain, i, start.x, start.y).squaredNorm();
-    if (!(std::sqrt(squares / static_cast<double>(chain.used_count())) < 0.2 * rms_mm)) return {};
+    if (!(std::sqrt(squares / static_cast<double>(chain.used_count())) < kOtherMountFits * rms_mm)) return {};
     return Text(
         "the pairs fit as {}, or with camera_from_target inverted: the mount or the direction of one list "
         "seems wrong",
@@ -261,7 +270,7 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
     }
     // Robust first, so that a wrong pair cannot pull the least squares before it is seen.
     Scales scales = scales_from_medians(chain, x, y);
-    for (const double k : {100.0, 30.0, 30.0}) {
+    for (const double k : kRobustScales) {
         refine(chain, x, y, scales, k, 30);
         scales = scales_from_medians(chain, x, y);
     }
@@ -272,8 +281,8 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
             squares.push_back(chain.used[i] ? pair_square(chain, i, x, y, scales) : 0);
         Chain fewer = chain;
         for (size_t i = 0; i < chain.size(); ++i)
-            if (squares[i] > 400 &&
-                (residual_mm(chain, i, x, y).norm() > 0.1 || residual_rad(chain, i, x, y).norm() > 1e-3))
+            if (squares[i] > kNoDoubt && (residual_mm(chain, i, x, y).norm() > kNoDoubt_mm ||
+                                          residual_rad(chain, i, x, y).norm() > kNoDoubt_rad))
                 fewer.used[i] = false;
         if (fewer.used_count() >= 5 && fewer.used_count() * 3 > chain.used_count() * 2) chain = fewer;
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/calibration/numbers.h"
 #include "core/calibration/statistics.h"
 #include "core/geometry/decompositions.h"
 #include "core/numbers.h"
@@ -23,7 +24,11 @@ constexpr double kRobotStart = 0.1;
 constexpr double kPriorWeight = 0.1;
 constexpr double kPriorLog = 3;  // sigma of a variance's logarithm, before the pairs
 constexpr double kFewestFreedom = 3;
-constexpr double kLeastLeft = 0.02;  // of the isotropic variance, beside a stated robot
+constexpr double kLeastLeft = 0.02;        // of the isotropic variance, beside a stated robot
+constexpr double kLeastTrace = 1e-12;      // of what the pairs say of a variance: guards the quotient
+constexpr double kVarianceSettled = 1e-3;  // of a variance's logarithm: a smaller change ends the round
+constexpr double kNoScatter = 1e-300;      // of a variance that is sure: guards the quotient
+constexpr double kMostFreedom = 1e6;
 
 // All in units of the isotropic scales.
 class PairNoise {
@@ -126,10 +131,10 @@ class PairNoise {
             weighted_[i] = inverse_[i] * jacobian(i);
             information.noalias() += jacobian(i).transpose() * weighted_[i];
         }
-        const Vector12 unit = information.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+        const Vector12 unit = information.diagonal().cwiseMax(kUntold).cwiseSqrt().cwiseInverse();
         cover_ = unit.asDiagonal() *
                  inverse_matrix(Matrix12(unit.asDiagonal() * information * unit.asDiagonal()) +
-                                1e-14 * Matrix12::Identity()) *
+                                kRidge * Matrix12::Identity()) *
                  unit.asDiagonal();
     }
 
@@ -151,11 +156,11 @@ class PairNoise {
         for (std::size_t k = 0; k < variance_.size(); ++k) {
             const double next =
                 std::sqrt((variance_[k] * variance_[k] * squares[k] + kPriorWeight * start_[k]) /
-                          std::max(trace[k] + kPriorWeight / variance_[k], 1e-12));
+                          std::max(trace[k] + kPriorWeight / variance_[k], kLeastTrace));
             change = std::max(change, std::abs(std::log(next / variance_[k])));
             variance_[k] = next;
         }
-        return change > 1e-3;
+        return change > kVarianceSettled;
     }
 
     Matrix12 stated() const {
@@ -201,8 +206,9 @@ class PairNoise {
             for (std::size_t k = 0; k < variance_.size(); ++k)
                 slope(static_cast<Eigen::Index>(k)) = cover_.col(n).dot(p[k] * cover_.col(n));
             const double scatter = slope.dot(unsure * slope);
-            const double freedom = 2 * std::pow(cover_(n, n), 2) / std::max(scatter, 1e-300);
-            student(n) = student_quantile(0.975, std::clamp(freedom, kFewestFreedom, 1e6)) / kNormal95;
+            const double freedom = 2 * std::pow(cover_(n, n), 2) / std::max(scatter, kNoScatter);
+            student(n) =
+                student_quantile(kUpper95, std::clamp(freedom, kFewestFreedom, kMostFreedom)) / kNormal95;
         }
         return student.asDiagonal() * adjusted * student.asDiagonal();
     }

@@ -15,6 +15,13 @@ using Vector12 = Eigen::Matrix<double, 12, 1>;
 
 constexpr double kSmallest_mm = 1e-6, kSmallest_rad = 1e-8;  // weights of exact data stay finite
 constexpr double kFloor_mm = 0.02, kFloor_rad = 2e-4;  // no camera and robot are better: for determinability
+constexpr double kOpenInformation = 1e-15;             // of the scaled information: no direction is more open
+// Levenberg and Marquardt; kFailedDamping: the least after a step that was none.
+constexpr double kDampingStart = 1e-6, kDampingDown = 0.1, kDampingUp = 10;
+constexpr double kLeastDamping = 1e-12, kFailedDamping = 1e-9;
+constexpr double kCostSettled = 1e-12;  // relative gain that ends it
+constexpr double kChiSquared3Median = 2.366;
+constexpr double kRatioSettled = 1e-4;  // of the scales' ratio: a smaller change moves nothing
 
 double cost_of(const Chain& chain, const Pose& x, const Pose& y, const Scales& s, double k) {
     double cost = 0;
@@ -49,9 +56,9 @@ Scales estimated_scales(const Chain& chain, const Pose& x, const Pose& y, const 
 // By eigenvalues of the scaled matrix, so that an open direction comes out as large as it is.
 Matrix12 inverse_information(const Linear& at) {
     const Matrix12 h = at.jacobian.transpose() * at.jacobian;
-    const Vector12 scale = h.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+    const Vector12 scale = h.diagonal().cwiseMax(kUntold).cwiseSqrt().cwiseInverse();
     const SymmetricEigen eigen = symmetric_eigen(scale.asDiagonal() * h * scale.asDiagonal());
-    const Vector12 inverse = eigen.values.cwiseMax(1e-15).cwiseInverse();
+    const Vector12 inverse = eigen.values.cwiseMax(kOpenInformation).cwiseInverse();
     return scale.asDiagonal() * eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose() *
            scale.asDiagonal();
 }
@@ -103,7 +110,7 @@ Linear linearise_pairs(const Chain& chain, const Pose& x, const Pose& y, const S
 }
 
 void refine(const Chain& chain, Pose& x, Pose& y, const Scales& s, double k, int most_iterations) {
-    double cost = cost_of(chain, x, y, s, k), lambda = 1e-6;
+    double cost = cost_of(chain, x, y, s, k), lambda = kDampingStart;
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
         Linear at = linearise_pairs(chain, x, y, s);
         if (!std::isinf(k))
@@ -114,29 +121,30 @@ void refine(const Chain& chain, Pose& x, Pose& y, const Scales& s, double k, int
             }
         const Matrix12 h = at.jacobian.transpose() * at.jacobian;
         const Vector12 gradient = at.jacobian.transpose() * at.residuals;
-        const Vector12 scale = h.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+        const Vector12 scale = h.diagonal().cwiseMax(kUntold).cwiseSqrt().cwiseInverse();
         bool moved = false;
         double gain = 0;
         for (int attempt = 0; attempt < 10 && !moved; ++attempt) {
             Matrix12 damped = scale.asDiagonal() * h * scale.asDiagonal();
-            damped.diagonal().array() += lambda + 1e-14;
+            damped.diagonal().array() += lambda + kRidge;
             const Vector12 step =
                 -(scale.asDiagonal() * solve_symmetric(damped, scale.asDiagonal() * gradient));
             const Pose next_x = retract(x, step.head<6>()), next_y = retract(y, step.tail<6>());
             const double next = cost_of(chain, next_x, next_y, s, k);
             moved = next <= cost;
-            lambda = moved ? std::max(1e-12, lambda * 0.1) : std::max(1e-9, lambda * 10);
+            lambda = moved ? std::max(kLeastDamping, lambda * kDampingDown)
+                           : std::max(kFailedDamping, lambda * kDampingUp);
             if (!moved) continue;
             gain = cost - next;
             x = next_x;
             y = next_y;
             cost = next;
         }
-        if (!moved || gain <= 1e-12 * cost) break;
+        if (!moved || gain <= kCostSettled * cost) break;
     }
 }
 
-// Chi-squared with three degrees of freedom has median 2.366.
+// The squares of three numbers are chi-squared.
 Scales scales_from_medians(const Chain& chain, const Pose& x, const Pose& y) {
     std::vector<double> t, r;
     for (size_t i = 0; i < chain.size(); ++i) {
@@ -144,8 +152,8 @@ Scales scales_from_medians(const Chain& chain, const Pose& x, const Pose& y) {
         t.push_back(residual_mm(chain, i, x, y).squaredNorm());
         r.push_back(residual_rad(chain, i, x, y).squaredNorm());
     }
-    return {std::max(kSmallest_mm, std::sqrt(median(t) / 2.366)),
-            std::max(kSmallest_rad, std::sqrt(median(r) / 2.366))};
+    return {std::max(kSmallest_mm, std::sqrt(median(t) / kChiSquared3Median)),
+            std::max(kSmallest_rad, std::sqrt(median(r) / kChiSquared3Median))};
 }
 
 Scales solve(const Chain& chain, Pose& x, Pose& y, Scales scales) {
@@ -155,7 +163,7 @@ Scales solve(const Chain& chain, Pose& x, Pose& y, Scales scales) {
         const double change = std::abs(
             std::log((next.mm / next.rad) / (scales.mm / scales.rad)));  // only the ratio moves the solution
         scales = next;
-        if (change < 1e-4) break;
+        if (change < kRatioSettled) break;
     }
     return scales;
 }

@@ -14,6 +14,11 @@ namespace seamwright::hand_eye {
 
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
 
+// Information of a tangent that no pair tells.
+inline constexpr double kUntold = 1e-30;
+// Added to the diagonal of an information scaled to unit diagonal: keeps open directions solvable.
+inline constexpr double kRidge = 1e-14;
+
 struct Chain {
     std::vector<Pose> a, c;
     std::vector<bool> used;

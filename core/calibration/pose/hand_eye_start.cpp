@@ -85,7 +85,8 @@ std::optional<Eigen::Matrix3d> andreff(const std::vector<Motion>& list) {
     const Eigen::VectorXd v = symmetric_eigen(h).vectors.col(0);
     Eigen::Matrix3d m = Eigen::Map<const Eigen::Matrix3d>(v.data());
     const double det = m.determinant();
-    if (std::abs(det) < 1e-9) return std::nullopt;
+    constexpr double kSingular = 1e-9;
+    if (std::abs(det) < kSingular) return std::nullopt;
     m *= (det > 0 ? 1 : -1) / std::cbrt(std::abs(det));
     return nearest_rotation(m);
 }
@@ -93,12 +94,15 @@ std::optional<Eigen::Matrix3d> andreff(const std::vector<Motion>& list) {
 // Dual quaternions: null space (two-dimensional) of the stacked 6x8 of (3.21) in the paper, then the unit
 // constraint.
 std::optional<Pose> daniilidis(const std::vector<Motion>& list) {
+    constexpr double kHalfTurn = 1e-6;      // scalar part of a quaternion, below which it is a half turn
+    constexpr double kNoQuadratic = 1e-15;  // a coefficient of the unit constraint up to that is none
+    constexpr double kNoLength2 = 1e-12;    // of the rotation's share of the null space: shorter is no answer
     Eigen::Matrix<double, 8, 8> h = Eigen::Matrix<double, 8, 8>::Zero();
     for (const auto& motion : list) {
         const Eigen::Quaterniond qa = positive(motion.a.linear());
         Eigen::Quaterniond qb = positive(motion.b.linear());
         // Half turns: both signs are the same rotation; the scalar parts must agree.
-        if (qa.w() < 1e-6 && qa.vec().dot(qb.vec()) < -1) qb.coeffs() *= -1;
+        if (qa.w() < kHalfTurn && qa.vec().dot(qb.vec()) < -1) qb.coeffs() *= -1;
         const auto dual = [](const Eigen::Quaterniond& q, const Eigen::Vector3d& t) -> Eigen::Vector3d {
             return 0.5 * (q.w() * t + t.cross(q.vec()));
         };
@@ -129,14 +133,14 @@ std::optional<Pose> daniilidis(const std::vector<Motion>& list) {
     };
     const double root = qb * qb - 4 * qa * qc;
     if (root < 0) return std::nullopt;
-    if (std::abs(qa) > 1e-15) {
+    if (std::abs(qa) > kNoQuadratic) {
         consider((-qb + std::sqrt(root)) / (2 * qa), 1);
         consider((-qb - std::sqrt(root)) / (2 * qa), 1);
     } else {
         consider(1, 0);
-        if (std::abs(qb) > 1e-15) consider(-qc / qb, 1);
+        if (std::abs(qb) > kNoQuadratic) consider(-qc / qb, 1);
     }
-    if (best < 1e-12) return std::nullopt;
+    if (best < kNoLength2) return std::nullopt;
     const Eigen::Vector4d q = weights[0] * u1 + weights[1] * u2, d = weights[0] * w1 + weights[1] * w2;
     const Eigen::Quaterniond rotation(q[0], q[1], q[2], q[3]), dual(d[0], d[1], d[2], d[3]);
     return make_pose(rotation.normalized().toRotationMatrix(), 2 * (dual * rotation.conjugate()).vec());

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/calibration/numbers.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/statistics.h"
 #include "core/geometry/decompositions.h"
@@ -25,6 +26,13 @@ constexpr double kMirrorGain = 0.8, kMirrorMisfit_mm2 = 0.25;
 constexpr double kGoodPlate_mm = 0.1, kUsablePlate_mm = 0.5;  // three sigma anywhere on the plate
 constexpr double kNoiseFloor_mm = 0.01;  // of a world point, for what three points can promise
 constexpr double kSmallestOutlier_mm = 0.05;
+constexpr double kLeastRest_mm2 = 1e-12;                           // squares that exact points leave
+constexpr double kSmallestPlate_mm = 2;                            // a smaller one looks like metres
+constexpr double kLeastSize_mm = 1e-12, kLeastSpread_mm2 = 1e-12;  // guard quotients
+// Sizes a thousand times apart, to twice either way.
+constexpr double kThousandthFrom = 0.0005, kThousandthTo = 0.002, kThousandFrom = 500, kThousandTo = 2000;
+constexpr double kSamePoint = 1e-6;   // of the plate's size, at least of a millimetre
+constexpr double kStretchSigmas = 4;  // a wrong scale is that sure
 
 using Points = std::vector<Eigen::Vector3d>;
 
@@ -101,7 +109,8 @@ Expected<void> check_input(const std::vector<PlatePoint>& points, const PlateOpt
         world.push_back(point.world);
         if (!point.plate.allFinite() || !point.world.allFinite())
             return input_error("a coordinate is not a finite number", Text("point '{}'", point.id));
-        if (point.plate.cwiseAbs().maxCoeff() > 1e5 || point.world.cwiseAbs().maxCoeff() > 1e6)
+        if (point.plate.cwiseAbs().maxCoeff() > kLargestBody_mm ||
+            point.world.cwiseAbs().maxCoeff() > kFarthestPoint_mm)
             return input_error("a coordinate is beyond 100 m on the plate or 1 km in the world",
                                Text("point '{}'", point.id), "give millimetres");
     }
@@ -118,22 +127,22 @@ Expected<void> check_input(const std::vector<PlatePoint>& points, const PlateOpt
         return input_error(Text("{} points are too few", count), "points",
                            "give at least three, better five or more");
     const double size = extent(plate), world_size = extent(world);
-    if (size > 0 && size < 2)
+    if (size > 0 && size < kSmallestPlate_mm)
         return input_error(
             Text("the plate measures {:.3g} only: its points look like metres, not millimetres", size),
             "points", "give millimetres (times 1000)");
-    const double ratio = world_size / std::max(size, 1e-12);
-    if (ratio > 0.0005 && ratio < 0.002)
+    const double ratio = world_size / std::max(size, kLeastSize_mm);
+    if (ratio > kThousandthFrom && ratio < kThousandthTo)
         return input_error(
             "the world points are a thousandth of the plate's size: they look like metres, not millimetres",
             "points", "give millimetres (times 1000)");
-    if (ratio > 500 && ratio < 2000)
+    if (ratio > kThousandFrom && ratio < kThousandTo)
         return input_error(
             "the plate points are a thousandth of the world's size: they look like metres, not millimetres",
             "points", "give millimetres (times 1000)");
     for (size_t i = 0; i < points.size(); ++i)
         for (size_t k = 0; k < i; ++k)
-            if (use[i] && use[k] && (plate[i] - plate[k]).norm() < 1e-6 * std::max(1.0, size))
+            if (use[i] && use[k] && (plate[i] - plate[k]).norm() < kSamePoint * std::max(1.0, size))
                 return input_error(Text("'{}' and '{}' are the same point of the plate", ids[k], ids[i]),
                                    "points", "give different points, or their mean once");
     return {};
@@ -181,7 +190,8 @@ std::string drop_wrong(const std::vector<PlatePoint>& points, Pairs& pairs, Pair
             pairs.use[i] = true;
         }
         if (suspect == points.size()) break;
-        const double f = (fit.squares - best.squares) / 3 / (std::max(best.squares, 1e-12) / redundancy);
+        const double f =
+            (fit.squares - best.squares) / 3 / (std::max(best.squares, kLeastRest_mm2) / redundancy);
         const double miss = (pairs.world[suspect] - best.pose * pairs.plate[suspect]).norm();
         if (f < outlier_limit(redundancy) || miss < kSmallestOutlier_mm) break;
         pairs.use[suspect] = false;
@@ -238,12 +248,12 @@ double worst_sigma_mm(const Points& plate, const Pose& pose, const Matrix6& cova
 Judgement judged(const PlateResult& result, double worst_mm, double size, double spread, double count) {
     const double stretch = std::abs(result.scale - 1) * size;
     const double stretch_sigma =
-        std::max(result.sigma_mm, kNoiseFloor_mm) * size / std::sqrt(std::max(1e-12, spread));
+        std::max(result.sigma_mm, kNoiseFloor_mm) * size / std::sqrt(std::max(kLeastSpread_mm2, spread));
     const Text fit("rms {:.3f} mm, three sigma on the plate {:.3f} mm", result.rms_mm, 3 * worst_mm);
     if (result.mirrored) {
         return {Verdict::poor, "the world points fit a mirrored plate",
                 "check for an axis that is flipped or swapped"};
-    } else if (stretch > kStretch_mm && stretch > 4 * stretch_sigma &&
+    } else if (stretch > kStretch_mm && stretch > kStretchSigmas * stretch_sigma &&
                std::abs(result.scale - 1) > kSmallestScale) {
         return {Verdict::poor,
                 Text("distances in the world are {:.5f} times those on the plate", result.scale),
@@ -309,7 +319,7 @@ Expected<PlateResult> calibrate_plate(const std::vector<PlatePoint>& points, con
     result.world_from_plate = fit.pose;
     result.rms_mm = std::sqrt(fit.squares / count);
     result.sigma_mm = options.sigma_mm.value_or(std::sqrt(fit.squares / redundancy));
-    const double student = options.sigma_mm ? 1 : student_quantile(0.975, redundancy) / kNormal95;
+    const double student = options.sigma_mm ? 1 : student_quantile(kUpper95, redundancy) / kNormal95;
     const Matrix6 unit = inverse_matrix(information_of(pairs.plate, fit.pose, pairs.use));
     result.covariance = unit * (result.sigma_mm * result.sigma_mm * student * student);
     const PairMoments m = moments_of(pairs.world, pairs.plate, pairs.use);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/calibration/numbers.h"
 #include "core/calibration/pose_set.h"
 #include "core/geometry/decompositions.h"
 
@@ -13,6 +14,7 @@ namespace seamwright {
 namespace {
 
 constexpr double kGoodChain_mm = 0.1, kUsableChain_mm = 0.3;  // three sigma of the working point
+constexpr double kNoCovariance = 1e-12;                       // one all smaller is none
 
 double largest_sigma(const Pose& pose, const Matrix6& covariance, const Eigen::Vector3d& point) {
     Eigen::Matrix<double, 3, 6> j;
@@ -29,14 +31,15 @@ Expected<void> check_uncertain_pose(const UncertainPose& link, const Text& where
     SEAM_OK(pose_from_matrix(link.pose.matrix(), where));
     if (!link.covariance.allFinite())
         return input_error("the covariance holds a value that is not a finite number", where);
-    const double scale = std::max(1e-12, link.covariance.cwiseAbs().maxCoeff());
-    if ((link.covariance - link.covariance.transpose()).cwiseAbs().maxCoeff() > 1e-6 * scale)
+    const double scale = std::max(kNoCovariance, link.covariance.cwiseAbs().maxCoeff());
+    if ((link.covariance - link.covariance.transpose()).cwiseAbs().maxCoeff() > kCovarianceSlack * scale)
         return input_error("the covariance is not symmetric", where);
     // Rows and columns of millimetres and radians differ much in size: judge the correlation matrix.
     const Vector6 inverse = link.covariance.diagonal().cwiseMax(0).cwiseSqrt().unaryExpr(
         [](double s) { return s > 0 ? 1 / s : 0.0; });
     const Matrix6 correlation = inverse.asDiagonal() * link.covariance * inverse.asDiagonal();
-    if (link.covariance.diagonal().minCoeff() < 0 || symmetric_eigen(correlation).values[0] < -1e-6)
+    if (link.covariance.diagonal().minCoeff() < 0 ||
+        symmetric_eigen(correlation).values[0] < -kCovarianceSlack)
         return input_error(
             "the covariance is not positive (a variance below zero or a correlation above one)", where);
     for (int i = 0; i < 6; ++i)

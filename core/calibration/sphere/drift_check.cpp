@@ -18,6 +18,7 @@ namespace {
 constexpr double kLever_mm = 100;
 constexpr double kSettled_mm = 1e-10;
 constexpr double kLeastNoise_mm = 1e-4;  // keeps noise-free data from looking sure
+constexpr double kUnsymmetric = 1e-9;    // of its size, by which a covariance may differ from its transpose
 // Shares of the radius that the laser must be off the sphere's middle, as expected and as measured, to tell y.
 constexpr double kExpectedOff = 0.2, kMeasuredOff = 0.15;
 // Of chi squared: something has changed; and what one change has to explain, with slack for circles that are not the sphere's.
@@ -172,7 +173,7 @@ Expected<DriftResult> check_drift(const std::vector<DriftMeasurement>& measureme
         if (!m.measured_flange_mm.allFinite() || !m.known_base_mm.allFinite() || !m.covariance.allFinite())
             return input_error("a value is not a finite number", where);
         const Eigen::LLT<Eigen::Matrix3d> llt(m.covariance);
-        if (llt.info() != Eigen::Success || !m.covariance.isApprox(m.covariance.transpose(), 1e-9))
+        if (llt.info() != Eigen::Success || !m.covariance.isApprox(m.covariance.transpose(), kUnsymmetric))
             return input_error("the covariance is not symmetric and positive definite", where);
         weight.push_back(llt.solve(Eigen::Matrix3d::Identity()));
     }

@@ -10,6 +10,7 @@ FieldScale sphere_scale(const std::vector<Section>& sections, const Model& model
                         double centre_variance) {
     constexpr int kPose = 9, kAll = kPose + 3;
     constexpr double kLeastCentre_mm2 = 1e-12;
+    constexpr double kUntold = 1e-300;  // information of an unknown that no cut tells
     if (!(point_variance > 0)) return {};
     using Unknowns = Eigen::Matrix<double, kAll, 1>;
     using Square = Eigen::Matrix<double, kAll, kAll>;
@@ -44,7 +45,7 @@ FieldScale sphere_scale(const std::vector<Section>& sections, const Model& model
         information -= cross * factor.solve(cross.transpose());
         gradient -= cross * factor.solve(own_gradient);
     }
-    const Unknowns unit = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Unknowns unit = information.diagonal().cwiseMax(kUntold).cwiseSqrt().cwiseInverse();
     const Eigen::LLT<Square> factor(Square(unit.asDiagonal() * information * unit.asDiagonal()));
     if (factor.info() != Eigen::Success) return {};
     const Square inverse = factor.solve(Square::Identity());

@@ -8,6 +8,7 @@
 #include <limits>
 #include <set>
 
+#include "core/calibration/numbers.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/sphere/sphere_scale.h"
 #include "core/calibration/sphere/tcp_sphere_advice.h"
@@ -28,7 +29,8 @@ constexpr double kNoiseFloor_mm =
 constexpr double kUndeterminedSigma_mm = 2.0;             // a direction weaker than this is not determined
 constexpr double kGoodTcp_mm = 0.1, kUsableTcp_mm = 0.5;  // three sigma at the working distance
 constexpr double kPoorFit_mm = 0.5;
-constexpr double kLooksAtRadius_mm = 0.1;  // a fit worse than this may be one to a wrong radius
+constexpr double kLooksLikeMetres_mm = 0.5;  // extent of all profiles in x, and a radius, below
+constexpr double kLooksAtRadius_mm = 0.1;    // a fit worse than this may be one to a wrong radius
 // Another radius is told where it leaves this share of the disagreement and differs by so much.
 constexpr double kMuchBetter = 0.2, kOtherRadius_mm = 0.05;
 // Of a profile's steps in x, and of the profiles: so many one way make an order.
@@ -86,12 +88,12 @@ Expected<void> check_input(const std::vector<SphereObservation>& observations,
         }
     }
     if (finite == 0) return input_error("no profile holds a single point", "observations");
-    if (high - low < 0.5)
+    if (high - low < kLooksLikeMetres_mm)
         return input_error(
             Text("all profile points lie within {:.3g} in x: these look like metres, not millimetres",
                  high - low),
             "observations", "give profile points in millimetres (times 1000)");
-    if (options.radius_mm && *options.radius_mm < 0.5)
+    if (options.radius_mm && *options.radius_mm < kLooksLikeMetres_mm)
         return input_error(Text("a radius of {:.3g} mm looks like metres", *options.radius_mm), "radius_mm",
                            "give it in millimetres (times 1000)");
     return {};
@@ -118,6 +120,7 @@ MirroredAxis judge_axes(const std::vector<Section>& sections,
     }
     if (used == 0) return MirroredAxis::none;
     if (options.nominal_flange_from_sensor) {
+        constexpr double kThatWay_deg = 45;  // within, from an attitude
         // Half a turn about Z is what mirrored x looks like, half a turn about X mirrored z.
         const Eigen::Matrix3d turn =
             options.nominal_flange_from_sensor->linear().transpose() * model.flange_from_sensor.linear();
@@ -125,19 +128,19 @@ MirroredAxis judge_axes(const std::vector<Section>& sections,
             return rotation_log(turn * Eigen::Vector3d(x, y, z).asDiagonal()).norm();
         };
         const double plain = angle_to(1, 1, 1), about_z = angle_to(-1, -1, 1), about_x = angle_to(1, -1, -1);
-        if (about_z < plain && about_z < about_x && about_z < rad_from_deg(45)) {
+        if (about_z < plain && about_z < about_x && about_z < rad_from_deg(kThatWay_deg)) {
             notices.push_back(
                 "the profile's x axis is mirrored: the sensor comes out turned half about Z against its "
                 "nominal mounting");
             return MirroredAxis::x;
         }
-        if (about_x < plain && about_x < rad_from_deg(45)) {
+        if (about_x < plain && about_x < rad_from_deg(kThatWay_deg)) {
             notices.push_back(
                 "the profile's z axis is mirrored: the sensor comes out turned half about X against its "
                 "nominal mounting");
             return MirroredAxis::z;
         }
-        if (plain < rad_from_deg(45)) return MirroredAxis::none;
+        if (plain < rad_from_deg(kThatWay_deg)) return MirroredAxis::none;
     }
     if (side / used < -kBulges) {
         notices.push_back(
@@ -313,7 +316,7 @@ Matrix10 covariance_of(const std::vector<Section>& sections, const Model& model,
                covariance_of_centres(sections, model, inverse, stated_variance);
     if (!noise.poses_disagree)
         return inverse * system.meat * inverse * (system.count / std::max(1.0, system.count - unknowns));
-    const double student = student_quantile(0.975, noise.redundancy) / kNormal95;
+    const double student = student_quantile(kUpper95, noise.redundancy) / kNormal95;
     return student * student *
            (inverse * noise.point_variance +
             covariance_of_centres(sections, model, inverse, noise.centre_variance));

@@ -15,6 +15,11 @@ namespace {
 
 constexpr double kLever_mm = 100;
 constexpr double kProposedTurn_deg = 25;
+constexpr double kHalfArc_deg = 50;
+constexpr double kLeastEigenvalue = 1e-14;  // of the largest: less is no information
+constexpr double kNoInformation = 1e-300;   // .. and of a largest that is none
+// Information added where proposals are compared: to a radius that is given, and to every direction.
+constexpr double kGivenRadius = 1e12, kEveryDirection = 1e-8;
 
 // d(t, w, c, r) / d(working point, lever * w, c, r): the working point is R s + t with fixed s.
 Matrix10 scaled_basis(const Model& model, const Eigen::Vector3d& working_point_sensor) {
@@ -34,7 +39,7 @@ Matrix10 information_of_view(const Section& view, const Model& model, int points
     Matrix10 sum = Matrix10::Zero();
     constexpr int kSteps = 21;
     for (int i = 0; i < kSteps; ++i) {
-        const double angle = rad_from_deg(-50 + 100.0 * i / (kSteps - 1));
+        const double angle = rad_from_deg(-kHalfArc_deg + 2 * kHalfArc_deg * i / (kSteps - 1));
         const Eigen::Vector3d u =
             Eigen::Vector3d(-rho * std::sin(angle), s.y(), -side * rho * std::cos(angle)) / model.radius;
         Vector10 j = js.transpose() * u;
@@ -54,7 +59,7 @@ Determination determination(const Matrix10& information, const Model& model,
     const SymmetricEigen eigen = symmetric_eigen(scaled.topLeftCorner(n, n));
     Determination result;
     result.weakest_direction.head(n) = eigen.vectors.col(0);
-    const double floor = 1e-14 * std::max(eigen.values[n - 1], 1e-300);
+    const double floor = kLeastEigenvalue * std::max(eigen.values[n - 1], kNoInformation);
     const Eigen::VectorXd inverse = eigen.values.cwiseMax(floor).cwiseInverse();
     result.weakest =
         eigen.values[0] > floor ? std::sqrt(inverse[0]) : std::numeric_limits<double>::infinity();
@@ -89,7 +94,7 @@ std::vector<Text> degenerate_pose_words(const std::vector<Section>& sections, co
         std::string missing;
         static constexpr const char* names[] = {"X", "Y", "Z"};
         for (int k = 0; k < 3; ++k)
-            if (std::abs(axis[k]) < std::cos(rad_from_deg(25)))
+            if (std::abs(axis[k]) < std::cos(rad_from_deg(kNearAxis_deg)))
                 missing += (missing.empty() ? "" : " and ") + std::string(names[k]);
         std::string choice = missing;
         for (size_t at = choice.find(" and "); at != std::string::npos; at = choice.find(" and ", at))
@@ -111,12 +116,13 @@ std::vector<Text> degenerate_pose_words(const std::vector<Section>& sections, co
                                                                    static_cast<double>(centres.size()));
         const double wide = std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
         const double second = std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
-        if (wide < 0.5)
+        constexpr double kOnePlace_mm = 0.5;  // spread of the sphere's places, below
+        if (wide < kOnePlace_mm)
             words.push_back(
                 "the sphere stands at the same place in every profile: let it appear left and right, near "
                 "and far, and cut "
                 "it before and behind its middle");
-        else if (second < 0.5)
+        else if (second < kOnePlace_mm)
             words.push_back(
                 Text("the sphere's places in the sensor frame lie on one line along {}: shift it "
                      "across that line by "
@@ -217,8 +223,8 @@ std::vector<PoseProposal> propose_poses(const std::vector<Section>& sections, co
         const auto worth = [&](const Matrix10& total) {
             const Matrix10 basis = scaled_basis(model, working_point_sensor);
             Matrix10 scaled = basis.transpose() * total * basis;
-            if (!radius_free) scaled(9, 9) += 1e12;
-            scaled.diagonal().array() += 1e-8;
+            if (!radius_free) scaled(9, 9) += kGivenRadius;
+            scaled.diagonal().array() += kEveryDirection;
             return inverse_matrix(scaled).trace();
         };
         const View* best = nullptr;

@@ -25,7 +25,17 @@ constexpr std::array<double, 3> kRadiusStarts{1.01, 1.15, 1.5};
 // Scales of the loss, in millimetre squared: wide while a start is coarse, narrow when what does not belong is to go.
 constexpr std::array<double, 3> kSettlingScales{10.0, 3.0, 1.0};
 constexpr std::array<double, 2> kSubsetScales{1.0, 0.3};
-constexpr double kReweight_mm = 0.1;  // residuals below this count alike in a start
+constexpr double kReweight_mm = 0.1;      // residuals below this count alike in a start
+constexpr double kStartRidge = 1e-9;      // on the unit diagonal of a start's normal equations
+constexpr double kCoarseScale_mm = 10.0;  // of the loss, where every direction is tried
+constexpr std::size_t kCoarseKept = 24;
+// Levenberg and Marquardt on the statistics (of a start), and on the points; kFailedDamping: the least after a step that
+// was none.
+constexpr double kDampingDown = 0.1;
+constexpr double kReducedDamping = 1e-4, kReducedDampingUp = 8, kLeastReducedDamping = 1e-10;
+constexpr double kGainSettled = 1e-9, kExact_mm2 = 1e-18;  // relative gain, and cost, that end it
+constexpr double kPointsDamping = 1e-7, kPointsDampingUp = 10, kFailedDamping = 1e-8;
+constexpr double kStepSettled = 1e-11;  // mm and rad, of the largest entry
 
 void update_statistics(Section& section) {
     const double a = section.circle.x_mm, b = section.circle.z_mm, rho = section.circle.radius_mm;
@@ -150,7 +160,7 @@ Model start_for_axis(const std::vector<Section>& sections, const Eigen::Vector3d
         }
         const Vector7 scale = h.diagonal().cwiseMax(kFloor).cwiseSqrt().cwiseInverse();
         h = scale.asDiagonal() * h * scale.asDiagonal();
-        h.diagonal().array() += 1e-9;
+        h.diagonal().array() += kStartRidge;
         solution = scale.asDiagonal() * solve_symmetric(h, scale.asDiagonal() * g);
         for (size_t i = 0; i < sections.size(); ++i) {
             if (!sections[i].used) continue;
@@ -247,7 +257,7 @@ double solve_reduced(const std::vector<Section>& sections, Model& model, bool ra
                      int iterations) {
     const double scale2 = scale_mm * scale_mm;
     double cost = reduced_cost(sections, model, scale2);
-    double lambda = 1e-4;
+    double lambda = kReducedDamping;
     for (int iteration = 0; iteration < iterations; ++iteration) {
         Matrix10 h = Matrix10::Zero();
         Vector10 g = Vector10::Zero();
@@ -273,13 +283,13 @@ double solve_reduced(const std::vector<Section>& sections, Model& model, bool ra
                 gain = (cost - next_cost) / cost;
                 model = next;
                 cost = next_cost;
-                lambda = std::max(1e-10, lambda * 0.1);
+                lambda = std::max(kLeastReducedDamping, lambda * kDampingDown);
                 moved = true;
                 break;
             }
-            lambda *= 8;
+            lambda *= kReducedDampingUp;
         }
-        if (!moved || gain < 1e-9 || cost < 1e-18) break;
+        if (!moved || gain < kGainSettled || cost < kExact_mm2) break;
     }
     return cost;
 }
@@ -298,12 +308,12 @@ std::vector<Start> search(const std::vector<Section>& sections, double radius, b
     for (const double r : radii) {
         for (int i = 0; i < kDirections; ++i) {
             Start start{start_for_axis(sections, spiral_direction(i, kDirections), r), 0};
-            start.cost = solve_reduced(sections, start.model, false, 10.0, 4);
+            start.cost = solve_reduced(sections, start.model, false, kCoarseScale_mm, 4);
             if (std::isfinite(start.cost)) coarse.push_back(start);
         }
     }
     std::sort(coarse.begin(), coarse.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
-    if (coarse.size() > 24) coarse.resize(24);
+    if (coarse.size() > kCoarseKept) coarse.resize(kCoarseKept);
     std::vector<Start> found;
     const auto same = [](const Start& one, const Start& other, double rad, double mm) {
         return angle_rad(one.model.flange_from_sensor, other.model.flange_from_sensor) < rad &&
@@ -523,7 +533,7 @@ Matrix10 covariance_of_centres(const std::vector<Section>& sections, const Model
 
 double solve_points(const std::vector<Section>& sections, Model& model, bool radius_free) {
     System system = accumulate(sections, model, false);
-    double lambda = 1e-7;
+    double lambda = kPointsDamping;
     for (int iteration = 0; iteration < 30; ++iteration) {
         bool moved = false;
         double gain = 0;
@@ -534,14 +544,14 @@ double solve_points(const std::vector<Section>& sections, Model& model, bool rad
             if (after.squares <= system.squares) {
                 gain = system.squares - after.squares;
                 model = next;
-                moved = step.cwiseAbs().maxCoeff() > 1e-11;
+                moved = step.cwiseAbs().maxCoeff() > kStepSettled;
                 const bool small = gain <= kFloor * system.squares;
                 system = after;
-                lambda = std::max(kFloor, lambda * 0.1);
+                lambda = std::max(kFloor, lambda * kDampingDown);
                 if (small) moved = false;
                 break;
             }
-            lambda = std::max(1e-8, lambda * 10);
+            lambda = std::max(kFailedDamping, lambda * kPointsDampingUp);
         }
         if (!moved) break;
     }

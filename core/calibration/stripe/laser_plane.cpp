@@ -6,12 +6,19 @@
 #include <algorithm>
 
 #include "core/calibration/camera/camera.h"
+#include "core/calibration/numbers.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/statistics.h"
 #include "core/profile/units.h"
 
 namespace seamwright {
 namespace {
+
+constexpr double kRemovalTells = 20;      // F of the two numbers of a pair: far beyond what noise gives
+constexpr double kLeastRest_px2 = 1e-12;  // of exact pairs, a number
+constexpr double kOpenPose_mm = 5, kOpenPose_deg = 2;        // sigma, from which on the pose is open
+constexpr double kUsablePose_mm = 1, kUsablePose_deg = 0.3;  // sigma, beyond
+constexpr int kFewPairs = 10;
 
 CameraPoints view_of(const std::vector<LaserPair>& pairs, const std::vector<char>& used, int without = -1) {
     CameraPoints view;
@@ -68,7 +75,8 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     std::vector<char> used(pairs.size(), 1);
     double extent = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-        if (!pairs[i].pixel.allFinite() || !pairs[i].laser_mm.allFinite() || pairs[i].laser_mm.norm() > 1e6)
+        if (!pairs[i].pixel.allFinite() || !pairs[i].laser_mm.allFinite() ||
+            pairs[i].laser_mm.norm() > kFarthestPoint_mm)
             return input_error("the pair is not made of finite numbers", "pairs[" + pairs[i].id + "]",
                                "leave it out");
         used[i] = std::count(exclude.begin(), exclude.end(), pairs[i].id) == 0;
@@ -93,7 +101,7 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
                                          i < 3 ? "mm" : "deg", std::numeric_limits<double>::quiet_NaN()});
         return result;
     };
-    if (flatness(view_of(pairs, used)) < 0.01)
+    if (flatness(view_of(pairs, used)) < kPairsOnALine)
         return undetermined("the points lie on one line of the laser plane");
     auto solved = locate_target(camera, view_of(pairs, used));
     if (!solved) return undetermined(solved.error().what);
@@ -112,7 +120,8 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
             if (c < least) least = c, worst = static_cast<int>(i);
         }
         const double freedom = 2 * (n - 1) - 6;
-        if (worst < 0 || (cost - least) / 2 < 20 * std::max(least / freedom, 1e-12)) break;
+        if (worst < 0 || (cost - least) / 2 < kRemovalTells * std::max(least / freedom, kLeastRest_px2))
+            break;
         used[static_cast<std::size_t>(worst)] = 0;
         auto& p = report.poses[static_cast<std::size_t>(worst)];
         p.used = false;
@@ -122,10 +131,10 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
         solved = again;
     }
     const CameraPoints view = view_of(pairs, used);
-    if (flatness(view) < 0.01) return undetermined("the points lie on one line of the laser plane");
+    if (flatness(view) < kPairsOnALine) return undetermined("the points lie on one line of the laser plane");
     result.camera_from_laser = solved->camera_from_target;
     const double freedom = std::max(1.0, 2.0 * count() - 6);
-    const double student = student_quantile(0.975, freedom) / normal_quantile(0.975);
+    const double student = student_quantile(kUpper95, freedom) / normal_quantile(kUpper95);
     const double seen = solved->rms_px * solved->rms_px * count() / freedom;
     const double stated = variance_of_places(camera, solved->camera_from_target, view, place_sigma_mm);
     result.covariance = solved->covariance * std::max(student * student, seen > 0 ? stated / seen : 0.0);
@@ -164,23 +173,23 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     const double sigma_deg = deg_from_rad(std::sqrt(result.covariance.bottomRightCorner<3, 3>().trace()));
     const std::string without = left_out(report.poses);
     const char* more = "add pairs in the corners of the field of view, near and far";
-    if (!(sigma_mm < 5) || !(sigma_deg < 2)) {
+    if (!(sigma_mm < kOpenPose_mm) || !(sigma_deg < kOpenPose_deg)) {
         report.parameters.clear();
         report.covariance.resize(0, 0);
         return undetermined(
             Text("the pairs leave the pose open (sigma {:.1f} mm, {:.1f} degrees)", sigma_mm, sigma_deg));
     }
-    if (result.rms_px > 3)
+    if (result.rms_px > kPoorPairs_px)
         report.judgement = {Verdict::poor, Text("the pairs fit to {:.1f} px only", result.rms_px),
                             "check the camera and that pixels and laser points belong together"};
     else if (!without.empty())
         report.judgement = {Verdict::usable,
                             Text("the pair {} contradicts the others and was left out", without),
                             "measure it again"};
-    else if (count() < 10)
+    else if (count() < kFewPairs)
         report.judgement = {Verdict::usable, Text("{} pairs are few", count()),
                             "take 10 or more over the whole field of view"};
-    else if (sigma_mm > 1 || sigma_deg > 0.3)
+    else if (sigma_mm > kUsablePose_mm || sigma_deg > kUsablePose_deg)
         report.judgement = {Verdict::usable,
                             Text("the pose is known to {:.2f} mm and {:.2f} degrees", sigma_mm, sigma_deg),
                             more};

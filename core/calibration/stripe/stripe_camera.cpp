@@ -7,7 +7,9 @@
 #include <numeric>
 #include <set>
 
+#include "core/calibration/camera/camera_limits.h"
 #include "core/calibration/camera/corner_noise.h"
+#include "core/calibration/numbers.h"
 #include "core/calibration/pose/hand_eye.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/statistics.h"
@@ -22,6 +24,13 @@ namespace seamwright {
 namespace {
 
 constexpr double kOnPlaneMm = 0.5;
+constexpr double kStartCorner_px = 0.3;  // sigma of the corners until the residuals tell it
+// What corners and robots can be, whatever the residuals say: sigmas from .. to.
+constexpr double kBestCorner_px = 0.01, kWorstCorner_px = 3.0;
+constexpr double kBestRobot_mm = 0.05, kWorstRobot_mm = 5.0, kBestRobot_deg = 0.01, kWorstRobot_deg = 1;
+constexpr double kLeastCornerFreedom = 10.0, kLeastRobotFreedom = 3.0;
+constexpr double kStatedHolds = 0.99;    // of chi squared: residuals up to it are chance
+constexpr double kLeastNoise_px = 0.02;  // no corners are read better
 
 struct LadderStep {
     CameraFreedom freedom;
@@ -125,7 +134,7 @@ class Solver {
             double worst = 0;
             for (std::size_t k = 0; k < board.pixel.size(); ++k)
                 worst = std::max(worst, (board.pixel[k] - other.pixel[k]).norm());
-            if (worst < 1e-3) return static_cast<int>(i);
+            if (worst < kSamePicture_px) return static_cast<int>(i);
         }
         return -1;
     }
@@ -145,7 +154,7 @@ class Solver {
         bundle_.base_from_flange.assign(count(), std::nullopt);
         for (std::size_t k = 0; k < count(); ++k)
             bundle_.base_from_flange[k] = observations_[view_frame_[k]].base_from_flange;
-        bundle_.corner_sigma_px = 0.3;
+        bundle_.corner_sigma_px = kStartCorner_px;
         // A model that a person names is meant as it stands.
         bundle_.hold_exactly = options_.freedom.has_value();
         return start_robot();
@@ -162,7 +171,8 @@ class Solver {
         for (const auto k : with)
             turn =
                 std::max(turn, angle_rad(*bundle_.base_from_flange[k], *bundle_.base_from_flange[with[0]]));
-        if (turn < rad_from_deg(2)) {
+        constexpr double kLeastTurn_deg = 2;
+        if (turn < rad_from_deg(kLeastTurn_deg)) {
             robot_note_ = "the robot turned by less than 2 degrees";
             return {};
         }
@@ -213,6 +223,8 @@ class Solver {
                 rotation[i].push_back(
                     state_.camera_from_target[with[i]].linear() *
                     Eigen::AngleAxisd(t * kPi / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix());
+        constexpr double kMostDisagreement_rad2 = 0.25;  // a wrong pose counts no more than that
+        constexpr double kBetter_rad2 = 1e-12;           // by which a reading must be better: rounding is not
         const auto angle = [](const Eigen::Matrix3d& m) { return rotation_log(m).norm(); };
         const auto pair_cost = [&](std::size_t i, std::size_t j, int ti, int tj) {
             const Eigen::Matrix3d fa = bundle_.base_from_flange[with[i]]->linear().transpose() *
@@ -220,7 +232,7 @@ class Solver {
             const Eigen::Matrix3d fb = rotation[i][static_cast<std::size_t>(ti)] *
                                        rotation[j][static_cast<std::size_t>(tj)].transpose();
             const double d = angle(fa) - angle(fb);
-            return std::min(d * d, 0.25);
+            return std::min(d * d, kMostDisagreement_rad2);
         };
         // Against the first view, then sweeps of single flips.
         const int kinds = static_cast<int>(rotation[0].size());
@@ -233,7 +245,7 @@ class Solver {
                     double c = 0;
                     for (std::size_t j = 0; j < with.size(); ++j)
                         if (j != i && (sweep > 0 || j < i)) c += pair_cost(i, j, t, turns[j]);
-                    if (c < best_cost - 1e-12) best_cost = c, best = t;
+                    if (c < best_cost - kBetter_rad2) best_cost = c, best = t;
                 }
                 changed |= best != turns[i];
                 turns[i] = best;
@@ -280,8 +292,11 @@ class Solver {
         Eigen::Vector4d unit;
         unit << solve_symmetric(ata1, atb.head<3>() - ata.block<3, 1>(0, 3)), 1;
         const double unit_cost = btb - 2 * atb.dot(unit) + unit.dot(ata * unit);
-        if (!(s > 0) || std::abs(s - 1) < 0.06 || free_cost > 0.3 * unit_cost) return {};
-        if (s > 300 || s < 1 / 300.0)
+        constexpr double kWrongPitch = 0.06;  // relative
+        constexpr double kMisfitLeft = 0.3;   // of the misfit: what a free scale must bring it below
+        constexpr double kMetres = 300;       // times: beyond, one of the two is in metres
+        if (!(s > 0) || std::abs(s - 1) < kWrongPitch || free_cost > kMisfitLeft * unit_cost) return {};
+        if (s > kMetres || s < 1 / kMetres)
             return input_error(Text("the robot's motion is {:.0f} times the board's: metres were "
                                     "given where millimetres were meant",
                                     s > 1 ? s : 1 / s),
@@ -373,29 +388,33 @@ class Solver {
         for (const auto& b : bundle_.base_from_flange) n += b.has_value();
         return n;
     }
-    double robot_freedom() const { return std::max(3.0, 3 * robot_views() - 6); }
+    double robot_freedom() const { return std::max(kLeastRobotFreedom, 3 * robot_views() - 6); }
     // The robot's sigmas come from few poses: value +- 1.96 sigma of what rests on them holds 95 %. Not where they are
     // stated.
     double robot_student() const {
-        return robot_as_stated_ ? 1 : student_quantile(0.975, robot_freedom()) / kNormal95;
+        return robot_as_stated_ ? 1 : student_quantile(kUpper95, robot_freedom()) / kNormal95;
     }
 
     // Sigmas from the residuals, within what robots and corners can be.
     void estimate_sigmas(const PlateBundleFit& fit) {
         const double free = 2.0 * static_cast<double>(fit.corners) - 6.0 * static_cast<double>(count()) -
                             static_cast<double>(fit.normal.gg.rows());
-        bundle_.corner_sigma_px = std::clamp(std::sqrt(fit.corner_cost / std::max(free, 10.0)), 0.01, 3.0);
+        bundle_.corner_sigma_px = std::clamp(std::sqrt(fit.corner_cost / std::max(free, kLeastCornerFreedom)),
+                                             kBestCorner_px, kWorstCorner_px);
         if (!has_robot()) return;
         const double n = robot_views();
         const double left = std::sqrt(3 * n / robot_freedom());
-        bundle_.robot_sigma_mm = std::clamp(left * fit.robot_rms_mm / std::sqrt(3.0), 0.05, 5.0);
-        bundle_.robot_sigma_rad =
-            std::clamp(left * fit.robot_rms_rad / std::sqrt(3.0), rad_from_deg(0.01), rad_from_deg(1));
+        bundle_.robot_sigma_mm =
+            std::clamp(left * fit.robot_rms_mm / std::sqrt(3.0), kBestRobot_mm, kWorstRobot_mm);
+        bundle_.robot_sigma_rad = std::clamp(left * fit.robot_rms_rad / std::sqrt(3.0),
+                                             rad_from_deg(kBestRobot_deg), rad_from_deg(kWorstRobot_deg));
         const RobotRepeatability& stated = options_.robot;
-        const double chance = std::sqrt(chi_squared_quantile(0.99, robot_freedom()) / robot_freedom());
-        robot_as_stated_ = stated.sigma_mm > 0 && stated.sigma_rad > 0 &&
-                           bundle_.robot_sigma_mm <= std::max(chance * stated.sigma_mm, 0.05) &&
-                           bundle_.robot_sigma_rad <= std::max(chance * stated.sigma_rad, rad_from_deg(0.01));
+        const double chance =
+            std::sqrt(chi_squared_quantile(kStatedHolds, robot_freedom()) / robot_freedom());
+        robot_as_stated_ =
+            stated.sigma_mm > 0 && stated.sigma_rad > 0 &&
+            bundle_.robot_sigma_mm <= std::max(chance * stated.sigma_mm, kBestRobot_mm) &&
+            bundle_.robot_sigma_rad <= std::max(chance * stated.sigma_rad, rad_from_deg(kBestRobot_deg));
         if (robot_as_stated_) {
             bundle_.robot_sigma_mm = stated.sigma_mm;
             bundle_.robot_sigma_rad = stated.sigma_rad;
@@ -418,6 +437,9 @@ class Solver {
     void locate_stripes() {
         const CameraModel camera = camera_of(state_.intrinsics, data_.width, data_.height);
         const double f = 0.5 * (camera.fx + camera.fy);
+        // Of the straight line that a stripe's points lie on; points of a second line that takes the first one's place.
+        constexpr double kStripeWithin_px = 6;
+        constexpr std::size_t kFewestOnOther = 100;
         lines_.assign(count(), {});
         for (std::size_t k = 0; k < count(); ++k) {
             const auto& o = observations_[view_frame_[k]];
@@ -427,7 +449,7 @@ class Solver {
                 straight.push_back(f * camera.undistort(p));
                 line.push_back(static_cast<int>(std::lround(o.scan == ScanLines::rows ? p.y() : p.x())));
             }
-            lines_[k] = detail::stripe_lines(straight, line, 6, 2);
+            lines_[k] = detail::stripe_lines(straight, line, kStripeWithin_px, 2);
         }
         choice_.assign(count(), 0);
         detail::StripePoints points(count());
@@ -437,7 +459,7 @@ class Solver {
         for (std::size_t k = 0; k < count(); ++k)
             if (!consensus->frames[k] && lines_[k].size() > 1) {
                 const auto other = points_of(k, 1, true);
-                if (lines_[k][1].on.size() > 100 &&
+                if (lines_[k][1].on.size() > kFewestOnOther &&
                     detail::median_off_plane(consensus->plane, other) < kOnPlaneMm) {
                     choice_[k] = 1;
                     points[k] = other;
@@ -597,12 +619,15 @@ class Solver {
     // y = normal of the laser plane, z in the plane towards the camera, origin where the optical axis meets
     // the plane (or the plane's point nearest to the camera when the axis runs along it).
     static Pose sensor_frame(const LaserPlane& plane) {
+        constexpr double kAxisMeets = 0.05;   // sine between optical axis and plane: less runs along it
+        constexpr double kAxisAcross = 1e-6;  // of -Z in the plane: with less, -Y takes its place
         const Eigen::Vector3d n = plane.normal;
         Eigen::Vector3d origin = -plane.offset_mm * n;
-        if (std::abs(n.z()) > 0.05 && -plane.offset_mm / n.z() > 0) origin = {0, 0, -plane.offset_mm / n.z()};
+        if (std::abs(n.z()) > kAxisMeets && -plane.offset_mm / n.z() > 0)
+            origin = {0, 0, -plane.offset_mm / n.z()};
         Eigen::Vector3d z = -Eigen::Vector3d::UnitZ();
         z -= z.dot(n) * n;
-        if (z.norm() < 1e-6) z = -Eigen::Vector3d::UnitY() + Eigen::Vector3d::UnitY().dot(n) * n;
+        if (z.norm() < kAxisAcross) z = -Eigen::Vector3d::UnitY() + Eigen::Vector3d::UnitY().dot(n) * n;
         z.normalize();
         Eigen::Matrix3d r;
         r.col(1) = n;
@@ -678,6 +703,11 @@ class Solver {
     }
 
     Judgement verdict() const {
+        constexpr double kUsableFocal = 0.01;  // sigma of the focal length over itself, beyond
+        constexpr double kOpenPlane_deg = 2;   // sigma, beyond
+        constexpr double kPoorShare = 0.8, kUsableShare = 0.95;  // of the stripe rows on the plane, below
+        constexpr double kPoorMisfit = 5, kUsableMisfit = 3;     // times the corners' own noise, beyond
+        constexpr double kPoorSpread_mm = 3;  // of the plate's origin in the robot's base, beyond
         const double f = 0.5 * (result_.camera.fx + result_.camera.fy);
         const double sigma_f = fit_.covariance.size() ? result_.report.parameters[0].sigma
                                                       : std::numeric_limits<double>::infinity();
@@ -686,7 +716,7 @@ class Solver {
         std::string off;
         for (const auto& x : result_.frames)
             if (x.used && !x.stripe_used && !x.stripe.empty()) off += (off.empty() ? "" : ", ") + x.id;
-        if (!fit_.covariance.size() || sigma_f > 0.05 * f)
+        if (!fit_.covariance.size() || sigma_f > kOpenFocal * f)
             return {
                 Verdict::undetermined,
                 Text("the frames do not determine the focal length (sigma {:.0f} of {:.0f} px)", sigma_f, f),
@@ -694,25 +724,25 @@ class Solver {
         if (!result_.plane)
             return {Verdict::undetermined, "fewer than two frames show a stripe on the plate",
                     "place the plate so that the stripe crosses it in every frame"};
-        if (stripes < 3 || result_.plane_sigma_deg > 2)
+        if (stripes < 3 || result_.plane_sigma_deg > kOpenPlane_deg)
             return {Verdict::undetermined,
                     Text("the stripes of {} frames do not fix the laser plane (sigma {:.1f} degrees)",
                          stripes, result_.plane_sigma_deg),
                     "add frames with the plate nearer, farther and tilted"};
-        if (result_.on_plane_share < 0.8 || result_.rms_px > 1.5)
+        if (result_.on_plane_share < kPoorShare || result_.rms_px > kPoorCorners_px)
             return {Verdict::poor,
                     Text("only {:.0f} % of the stripe rows lie within 0.5 mm of one plane, corners "
                          "fit to {:.2f} px",
                          100 * result_.on_plane_share, result_.rms_px),
                     "check focus, that plate, laser and camera are held firmly, and the board's size"};
         // Beyond what corners are read to, the model does not explain them.
-        const double noise = std::max(detail::corner_noise_px(data_.views), 0.02);
+        const double noise = std::max(detail::corner_noise_px(data_.views), kLeastNoise_px);
         const double misfit = result_.sigma_px / noise;
         const auto misfits = [&] {
             return Text("the corners fit to {:.2f} px, {:.0f} times as far off as they are read",
                         result_.rms_px, misfit);
         };
-        if (misfit > 5)
+        if (misfit > kPoorMisfit)
             return {Verdict::poor, misfits(), "check that the plate is flat and firm, and the lens in focus"};
         const auto with_stripe = std::count_if(result_.frames.begin(), result_.frames.end(),
                                                [](const auto& x) { return x.used && !x.stripe.empty(); });
@@ -721,7 +751,7 @@ class Solver {
                     Text("the stripes of {} of {} frames contradict the plane of the others ({})",
                          with_stripe - stripes, with_stripe, off),
                     "hold laser and camera firmly together and take all frames again"};
-        if (result_.flange_from_camera && result_.target_spread_mm > 3)
+        if (result_.flange_from_camera && result_.target_spread_mm > kPoorSpread_mm)
             return {
                 Verdict::poor,
                 Text("the plate's origin spreads by {:.1f} mm in the robot's base", result_.target_spread_mm),
@@ -730,13 +760,13 @@ class Solver {
             return {Verdict::usable,
                     Text("the stripe of {} lies off the plane that the other {} frames share", off, stripes),
                     "check that laser and camera sit firmly, and take these frames again"};
-        if (misfit > 3)
+        if (misfit > kUsableMisfit)
             return {Verdict::usable, misfits(),
                     "check that the plate is flat and firm, and the lens in focus"};
-        if (sigma_f > 0.01 * f)
+        if (sigma_f > kUsableFocal * f)
             return {Verdict::usable, Text("the focal length is known to {:.1f} % only", 100 * sigma_f / f),
                     "add frames with the plate tilted by 20 to 40 degrees"};
-        if (result_.on_plane_share < 0.95)
+        if (result_.on_plane_share < kUsableShare)
             return {Verdict::usable,
                     Text("{:.0f} % of the stripe rows lie within 0.5 mm of one plane",
                          100 * result_.on_plane_share),

@@ -52,6 +52,10 @@ std::vector<std::size_t> support(const std::vector<Eigen::Vector2d>& points, con
 
 std::vector<PlateStripe> stripe_lines(const std::vector<Eigen::Vector2d>& straight,
                                       const std::vector<int>& line, double tolerance_px, int most) {
+    constexpr std::size_t kFewestPoints = 30;  // of a stripe
+    constexpr double kLeastApart_px = 30;      // of two points that a line is tried through
+    constexpr double kTrialWithin = 0.6;       // of the tolerance: near a trial line
+    constexpr int kLongestGap = 20;            // scan lines off the line that still are the stripe's
     std::vector<PlateStripe> out;
     std::vector<char> taken(straight.size(), 0);
     std::mt19937 random(7);
@@ -59,21 +63,21 @@ std::vector<PlateStripe> stripe_lines(const std::vector<Eigen::Vector2d>& straig
         std::vector<std::size_t> left;
         for (std::size_t i = 0; i < straight.size(); ++i)
             if (!taken[i]) left.push_back(i);
-        if (left.size() < 30) break;
+        if (left.size() < kFewestPoints) break;
         Line best;
         std::size_t best_count = 0;
         std::uniform_int_distribution<std::size_t> pick(0, left.size() - 1);
         for (int trial = 0; trial < 400; ++trial) {
             const auto a = left[pick(random)], b = left[pick(random)];
             const double apart = (straight[a] - straight[b]).norm();
-            if (apart < 30) continue;
+            if (apart < kLeastApart_px) continue;
             Line l;
             l.point = straight[a];
             l.direction = (straight[b] - straight[a]) / apart;
             std::size_t count = 0;
             int last = -1;
             for (const auto i : left)  // scan lines, not peaks, are counted
-                if (line[i] != last && l.distance(straight[i]) < 0.6 * tolerance_px) {
+                if (line[i] != last && l.distance(straight[i]) < kTrialWithin * tolerance_px) {
                     ++count;
                     last = line[i];
                 }
@@ -82,14 +86,14 @@ std::vector<PlateStripe> stripe_lines(const std::vector<Eigen::Vector2d>& straig
                 best = l;
             }
         }
-        if (best_count < 30) break;
+        if (best_count < kFewestPoints) break;
         std::vector<std::size_t> on;
         for (int i = 0; i < 5; ++i) {
             on = support(straight, line, taken, best, tolerance_px);
-            if (on.size() < 30) break;
+            if (on.size() < kFewestPoints) break;
             best = fit(straight, on);
         }
-        if (on.size() < 30) break;
+        if (on.size() < kFewestPoints) break;
         PlateStripe stripe;
         stripe.on = on;
         // Scan lines between the line's ends that have peaks, all of them off the line.
@@ -102,7 +106,7 @@ std::vector<PlateStripe> stripe_lines(const std::vector<Eigen::Vector2d>& straig
             if (s < line[on.front()] || s > line[on.back()]) continue;
             while (k < on.size() && line[on[k]] < s) ++k;
             if (k < on.size() && line[on[k]] == s) {
-                if (run < 20) stripe.missed += run;
+                if (run < kLongestGap) stripe.missed += run;
                 run = 0;
             } else {
                 ++run;

@@ -18,6 +18,8 @@ std::uint32_t grey(const StripeImage& image, int x, int y) {
 // Half way between background and the stripe's plateau, so that halo and speckle beside a saturated stripe do
 // not shift its middle. The plateau is the level of the brightest 0.3 % of the pixels: a stripe across the
 // frame covers more.
+constexpr double kPlateauQuantile = 0.997;
+
 double half_level(const StripeImage& image) {
     std::vector<std::uint32_t> histogram(static_cast<std::size_t>(image.full_scale()) + 1, 0);
     std::size_t count = 0;
@@ -33,17 +35,19 @@ double half_level(const StripeImage& image) {
                 return static_cast<double>(i);
         return static_cast<double>(histogram.size() - 1);
     };
-    const double background = quantile(0.5), plateau = quantile(0.997);
+    const double background = quantile(0.5), plateau = quantile(kPlateauQuantile);
     return 0.5 * (plateau - background);
 }
 
 std::vector<Eigen::Vector2d> peaks_of(const StripeImage& image, ScanLines scan, double threshold) {
+    // Of a stripe: in pixels, or of the longer side of the image where that is more.
+    constexpr double kWidest_px = 80.0, kWidest = 0.08;
     PeakOptions options;
     options.scan = scan;
     options.per_line = 3;
     options.threshold = threshold;
     options.min_width_px = 2;
-    options.max_width_px = std::max(80.0, 0.08 * std::max(image.width, image.height));
+    options.max_width_px = std::max(kWidest_px, kWidest * std::max(image.width, image.height));
     StripePeaks peaks;
     std::vector<Eigen::Vector2d> out;
     if (!find_peaks(image, options, peaks)) return out;
@@ -73,8 +77,10 @@ StripeObservation observe(const StripeFrame& frame, const BoardSpec& spec) {
     BoardSearch search = find_board(frame.image, spec);
     out.board = std::move(search.board);
     out.miss = search.miss;
+    constexpr double kStandsOut = 0.02;  // of full scale
     const double threshold = half_level(frame.image);
-    if (threshold < 0.02 * frame.image.full_scale()) return out;  // nothing stands out of the background
+    if (threshold < kStandsOut * frame.image.full_scale())
+        return out;  // nothing stands out of the background
     // A stripe gives about one peak on each line that crosses it; cut along it, it gives few and wide ones.
     const auto rows = peaks_of(frame.image, ScanLines::rows, threshold);
     const auto columns = peaks_of(frame.image, ScanLines::columns, threshold);

@@ -8,6 +8,9 @@
 namespace seamwright::detail {
 
 std::optional<LaserPlane> fit_plane(const StripePoints& points, const std::vector<char>& chosen) {
+    constexpr double kCauchy_mm = 0.2;       // distance from the plane at which a point's weight is halved
+    constexpr double kOneLine = 1e-9;        // of the scatter along a line, across it: less fixes no plane
+    constexpr double kNormalSettled = 1e-9;  // rad
     std::optional<LaserPlane> plane;
     for (int iteration = 0; iteration < 12; ++iteration) {
         Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -19,7 +22,7 @@ std::optional<LaserPlane> fit_plane(const StripePoints& points, const std::vecto
             for (const auto& p : points[i]) {
                 double w = share;
                 if (plane) {
-                    const double q = (plane->normal.dot(p) + plane->offset_mm) / 0.2;
+                    const double q = (plane->normal.dot(p) + plane->offset_mm) / kCauchy_mm;
                     w /= 1 + q * q;
                 }
                 mean += w * p;
@@ -31,13 +34,13 @@ std::optional<LaserPlane> fit_plane(const StripePoints& points, const std::vecto
         mean /= sum;
         const Eigen::Matrix3d scatter = square / sum - mean * mean.transpose();
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scatter);
-        if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()(1) > 1e-9 * eigen.eigenvalues()(2)))
+        if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()(1) > kOneLine * eigen.eigenvalues()(2)))
             return std::nullopt;
         LaserPlane next;
         next.normal = eigen.eigenvectors().col(0).normalized();
         if (next.normal.z() < 0) next.normal = -next.normal;
         next.offset_mm = -next.normal.dot(mean);
-        const bool still = plane && (next.normal - plane->normal).norm() < 1e-9;
+        const bool still = plane && (next.normal - plane->normal).norm() < kNormalSettled;
         plane = next;
         if (still) break;
     }

@@ -36,7 +36,8 @@ FieldScale stripe_scale(const Intrinsics& intrinsics, int width, int height, con
     for (Eigen::Index k = 0; k < n; ++k) {
         const double sigma = std::sqrt(std::max(0.0, covariance(k, k)));
         if (!(sigma > 0)) continue;
-        const double h = 1e-3 * sigma;
+        constexpr double kStepShare = 1e-3;  // of the sigma
+        const double h = kStepShare * sigma;
         const SensorModel up = model(h * Eigen::VectorXd::Unit(n, k)),
                           down = model(-h * Eigen::VectorXd::Unit(n, k));
         for (Eigen::Index i = 0; i < count; ++i) {

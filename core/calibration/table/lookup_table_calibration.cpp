@@ -5,9 +5,12 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
+#include "core/calibration/camera/camera_limits.h"
+#include "core/calibration/numbers.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/table/smooth_map.h"
 #include "core/calibration/table/table_nodes.h"
@@ -26,10 +29,11 @@ namespace {
 
 constexpr std::int64_t kMostNodes = 16'000'000;
 constexpr std::size_t kMostPairs = 100'000;
-constexpr int kFewestPairs = 6;      // to begin with
-constexpr int kFewestToCompare = 9;  // to tell a wrong one
-constexpr double kOnALine = 0.01;    // flatness()
-constexpr double kPoorFit_px = 3;
+constexpr int kFewestPairs = 6;       // to begin with
+constexpr int kFewestToCompare = 9;   // to tell a wrong one
+constexpr double kHalfCovered = 0.5;  // of the image, below
+// Between the pairs the map may be off by that much more than at them, or by so much.
+constexpr double kBetweenTimes = 1.6, kBetween_px = 0.05;
 constexpr int kManyPairs = 25;
 constexpr const char* kSpreadPairs =
     "measure 25 or more positions over the whole field of view, near and far";
@@ -132,7 +136,8 @@ void describe(const SmoothMap& map, const LookupTable& t, const Vector2d& middle
 
 Expected<void> check_request(int width, int height, const std::vector<LaserPair>& pairs,
                              const LookupTableOptions& options) {
-    if (width < 16 || height < 16 || width > 100000 || height > 100000)
+    if (width < kSmallestImage_px || height < kSmallestImage_px || width > kLargestImage_px ||
+        height > kLargestImage_px)
         return input_error(Text("an image of {}x{} pixels is not possible", width, height), "size",
                            "give [width, height] in pixels");
     const double fine = options.step_px;
@@ -150,7 +155,7 @@ Expected<void> check_request(int width, int height, const std::vector<LaserPair>
     double extent = 0;
     for (const auto& p : pairs) {
         const std::string where = "pairs[" + p.id + "]";
-        if (!p.pixel.allFinite() || !p.laser_mm.allFinite() || p.laser_mm.norm() > 1e6)
+        if (!p.pixel.allFinite() || !p.laser_mm.allFinite() || p.laser_mm.norm() > kFarthestPoint_mm)
             return input_error("the pair is not made of finite numbers", where, "leave it out");
         if (p.pixel.x() < -1 || p.pixel.y() < -1 || p.pixel.x() > width || p.pixel.y() > height)
             return input_error(Text("the pixel ({:.1f}, {:.1f}) lies outside the image of {}x{}", p.pixel.x(),
@@ -197,8 +202,8 @@ struct Fitted {
 Text fit_agreeing(const std::vector<LaserPair>& pairs, const std::vector<char>& allowed, Fitted& fitted) {
     const auto count = std::count(allowed.begin(), allowed.end(), 1);
     const Samples all = chosen(pairs, allowed);
-    if (!(flatness(all.pixel) > kOnALine)) return "the pixels lie on one line of the image";
-    if (!(flatness(all.laser) > kOnALine)) return "the targets lie on one line of the laser plane";
+    if (!(flatness(all.pixel) > kPairsOnALine)) return "the pixels lie on one line of the image";
+    if (!(flatness(all.laser) > kPairsOnALine)) return "the targets lie on one line of the laser plane";
     if (count < kFewestToCompare) return Text("{} pairs cannot tell a wrong one from the others", count);
     if (!fit_without_wrong(pairs, allowed, fitted.used, fitted.map))
         return "no smooth map explains the pairs";
@@ -206,7 +211,7 @@ Text fit_agreeing(const std::vector<LaserPair>& pairs, const std::vector<char>& 
     const Samples& s = fitted.samples;
     if (3 * fitted.count() < 2 * static_cast<double>(count))
         return Text("the largest set of pairs that agree has {} of {}", s.pixel.size(), count);
-    if (!(flatness(s.pixel) > kOnALine) || !(flatness(s.laser) > kOnALine))
+    if (!(flatness(s.pixel) > kPairsOnALine) || !(flatness(s.laser) > kPairsOnALine))
         return "the pairs that agree lie on one line";
     return {};
 }
@@ -242,11 +247,13 @@ double interpolation_mm(const Fitted& fitted, double step) {
 // The largest cells that err by far less than the noise and are no larger than the pairs lie apart.
 double suitable_step(const Fitted& fitted, const Support& support, int width, int height, double noise_mm) {
     constexpr double kMostCells = 400000, kShareOfNoise = 0.2, kExact_mm = 1e-6;
+    constexpr double kShareOfSpacing = 0.5;
+    constexpr std::array kSteps_px{32.0, 16.0, 8.0, 4.0, 2.0};
     double step = 0;
-    for (const double candidate : {32.0, 16.0, 8.0, 4.0, 2.0}) {
+    for (const double candidate : kSteps_px) {
         if (step > 0 && (width / candidate) * (height / candidate) > kMostCells) break;
         step = candidate;
-        if (candidate <= 0.5 * support.spacing &&
+        if (candidate <= kShareOfSpacing * support.spacing &&
             interpolation_mm(fitted, candidate) <= std::max(kShareOfNoise * noise_mm, kExact_mm))
             break;
     }
@@ -328,7 +335,7 @@ bool state_pairs(const std::vector<LaserPair>& pairs, const std::vector<char>& a
 Judgement judged(const LookupTableResult& result, double count, int folded, const Text& wrong,
                  int wrong_count) {
     const double hold_px = result.report.hold_out.rms_px / std::sqrt(2.0);  // per coordinate, as noise_px
-    if (result.noise_px > kPoorFit_px || hold_px > kPoorFit_px)
+    if (result.noise_px > kPoorPairs_px || hold_px > kPoorPairs_px)
         return {Verdict::poor,
                 Text("the pairs fit to {:.1f} px only",
                      std::isfinite(hold_px) ? std::max(hold_px, result.noise_px) : result.noise_px),
@@ -342,10 +349,10 @@ Judgement judged(const LookupTableResult& result, double count, int folded, cons
                                  : Text("the pairs {} contradict the others and were left out", wrong),
                 "measure again there"};
     if (count < kManyPairs) return {Verdict::usable, Text("{:.0f} pairs are few", count), kSpreadPairs};
-    if (result.covered_share < 0.5)
+    if (result.covered_share < kHalfCovered)
         return {Verdict::usable, Text("the table covers {:.0f} % of the image", 100 * result.covered_share),
                 "measure positions in the rest of the image, if the sensor is to see there"};
-    if (hold_px > std::max(1.6 * result.noise_px, 0.05))
+    if (hold_px > std::max(kBetweenTimes * result.noise_px, kBetween_px))
         return {Verdict::usable,
                 Text("between the pairs the map is off by {:.2f} px, at them by {:.2f}", hold_px,
                      result.noise_px),

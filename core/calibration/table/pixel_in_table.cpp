@@ -24,6 +24,7 @@ std::optional<Vector2d> pixel_in_table(const LookupTable& t, const Vector2d& xz,
             static_cast<std::size_t>(j) * static_cast<std::size_t>(t.columns) + static_cast<std::size_t>(i);
         return Vector2d(t.x_mm[n], t.z_mm[n]);
     };
+    constexpr double kArrived = 1e-10, kLongestStep = 4, kAside = 0.01;
     // In units of nodes.
     const auto search = [&](Vector2d p) -> std::optional<Vector2d> {
         for (int iteration = 0; iteration < 60 && p.allFinite(); ++iteration) {
@@ -40,8 +41,8 @@ std::optional<Vector2d> pixel_in_table(const LookupTable& t, const Vector2d& xz,
             slope.col(1) = (1 - a) * (n01 - n00) + a * (n11 - n10);
             const Vector2d step = slope.inverse() * (xz - value);
             if (!step.allFinite()) return std::nullopt;
-            if (step.norm() < 1e-10) return Vector2d(t.u0 + p.x() * t.step_u, t.v0 + p.y() * t.step_v);
-            p += step * std::min(1.0, 4 / step.norm());
+            if (step.norm() < kArrived) return Vector2d(t.u0 + p.x() * t.step_u, t.v0 + p.y() * t.step_v);
+            p += step * std::min(1.0, kLongestStep / step.norm());
         }
         return std::nullopt;
     };
@@ -57,8 +58,8 @@ std::optional<Vector2d> pixel_in_table(const LookupTable& t, const Vector2d& xz,
         }
     if (!nearest.allFinite()) return std::nullopt;
     // The nearest node may stand at the edge of a hole: begin in each of its cells.
-    for (const Vector2d& side :
-         {Vector2d(0.01, 0.01), Vector2d(-0.01, 0.01), Vector2d(0.01, -0.01), Vector2d(-0.01, -0.01)})
+    for (const Vector2d& side : {Vector2d(kAside, kAside), Vector2d(-kAside, kAside),
+                                 Vector2d(kAside, -kAside), Vector2d(-kAside, -kAside)})
         if (const auto found = search(nearest + side)) return found;
     return std::nullopt;
 }

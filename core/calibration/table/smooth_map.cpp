@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 
 #include "core/calibration/camera/camera.h"
+#include "core/calibration/numbers.h"
 #include "core/calibration/statistics.h"
 #include "core/geometry/decompositions.h"
 #include "core/numbers.h"
@@ -16,7 +17,8 @@ using Eigen::VectorXd;
 
 namespace {
 constexpr Index kMostKnots = 120;
-constexpr Index kManySamples = 40;  // from here on degrees below three only bend the map
+constexpr std::size_t kFewestForSpline = 24;  // samples
+constexpr Index kManySamples = 40;            // from here on degrees below three only bend the map
 constexpr double kMostTerms =
     0.67;  // a term of the polynomial for fewer than this many samples each fits noise
 constexpr double kMostFreedom = 0.8;     // of the samples, with the spline
@@ -24,6 +26,9 @@ constexpr int kStiffnessSteps = 22;      // half a decade each
 constexpr double kSmallestBend = 1e-10;  // of the largest: the penalty's null space by rounding
 constexpr double kLeastRank = 1e-9;      // of the polynomial's triangle
 constexpr double kLeastWeight = 0.01;    // of the best candidate's
+constexpr double kSameKnot2 = 1e-8;  // squared distance in the map's own coordinates, up to which two are one
+constexpr double kLeastLeftOut = 1e-6;   // kLeastRest, where candidates are compared
+constexpr double kNoError_px2 = 1e-300;  // guards the ratio of exact candidates
 }  // namespace
 
 Samples chosen(const std::vector<LaserPair>& pairs, const std::vector<char>& used) {
@@ -44,7 +49,7 @@ Vector2d through(const Eigen::Matrix3d& h, const Vector2d& p) {
 void SmoothMap::choose_knots(const std::vector<Vector2d>& places) {
     knots_.clear();
     const auto wanted = std::min<std::size_t>(kMostKnots, places.size() / 4);
-    if (places.size() < 24) return;
+    if (places.size() < kFewestForSpline) return;
     std::vector<double> nearest(places.size(), kInfinity);
     std::size_t next = 0;
     while (knots_.size() < wanted) {
@@ -54,7 +59,7 @@ void SmoothMap::choose_knots(const std::vector<Vector2d>& places) {
             nearest[i] = std::min(nearest[i], (places[i] - knots_.back()).squaredNorm());
             if (nearest[i] > most) most = nearest[i], next = i;
         }
-        if (!(most > 1e-8)) break;
+        if (!(most > kSameKnot2)) break;
     }
     if (knots_.size() < 6) knots_.clear();
 }
@@ -153,7 +158,7 @@ void SmoothMap::try_stiffnesses(const Modes& m, const MatrixXd& transform) {
         }
         if (!(c.effective < kMostFreedom * static_cast<double>(n))) break;
         for (Index i = 0; i < n; ++i) {
-            const double rest = std::max(1 - c.leverage(i), 1e-6);
+            const double rest = std::max(1 - c.leverage(i), kLeastLeftOut);
             c.error += c.residual.row(i).squaredNorm() / (rest * rest);
         }
         if (!std::isfinite(c.error) || !(weight_of(c, n) >= kLeastWeight)) continue;
@@ -176,7 +181,7 @@ void SmoothMap::try_stiffnesses(const Modes& m, const MatrixXd& transform) {
 // Beside the best so far: what each predicts of pairs it has not seen, as the likelihood of two numbers a pair, which are
 // half as many as they seem: left-out errors of neighbours go together.
 double SmoothMap::weight_of(const Candidate& c, Index pairs) const {
-    const double error = std::max(c.error, 1e-300);
+    const double error = std::max(c.error, kNoError_px2);
     return error <= least_error_ ? 1 : std::pow(least_error_ / error, 0.5 * static_cast<double>(pairs));
 }
 
@@ -207,7 +212,7 @@ void SmoothMap::average() {
         effective_ += c.weight * c.effective;
         noise_ += c.weight / std::max(1.0, n - c.effective) * (c.residual.transpose() * c.residual);
     }
-    student_ = student_quantile(0.975, std::max(1.0, 2 * freedom())) / normal_quantile(0.975);
+    student_ = student_quantile(kUpper95, std::max(1.0, 2 * freedom())) / normal_quantile(kUpper95);
     for (Candidate& c : candidates_) c.residual.resize(0, 0), c.leverage.resize(0);
 }
 

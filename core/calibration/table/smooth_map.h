@@ -13,6 +13,8 @@
 namespace seamwright::lookup_table {
 
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+// One less its leverage is at least this, of a pair that alone says what the map is there.
+inline constexpr double kLeastRest = 1e-9;
 
 // The pairs in use.
 struct Samples {
@@ -72,11 +74,11 @@ class SmoothMap {
     double studentised(std::size_t i, const Eigen::Matrix2d& noise_inverse) const {
         const auto k = static_cast<Eigen::Index>(i);
         const Eigen::Vector2d e = residual_.row(k).transpose();
-        return e.dot(noise_inverse * e) / std::max(1 - leverage_(k), 1e-9);
+        return e.dot(noise_inverse * e) / std::max(1 - leverage_(k), kLeastRest);
     }
     Eigen::Vector2d left_out_error(std::size_t i) const {
         const auto k = static_cast<Eigen::Index>(i);
-        return residual_.row(k).transpose() / std::max(1 - leverage_(k), 1e-9);
+        return residual_.row(k).transpose() / std::max(1 - leverage_(k), kLeastRest);
     }
     int degree() const { return degree_; }  // of the candidate that predicts best
     double effective() const { return effective_; }

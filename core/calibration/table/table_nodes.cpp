@@ -78,15 +78,17 @@ LookupTable build_table(const SmoothMap& map, const Support& support, const std:
         return static_cast<std::size_t>(j) * static_cast<std::size_t>(t.columns) +
                static_cast<std::size_t>(i);
     };
+    constexpr double kReachSpacings = 2, kReachSteps = 0.75;  // from a pair to a node that it supports
+    constexpr double kRounding_px = 1e-9;
     std::vector<char> near(nodes, 0);
-    const double reach = std::max(2 * support.spacing, 0.75 * step);
+    const double reach = std::max(kReachSpacings * support.spacing, kReachSteps * step);
     for (const auto& p : pixel)
         for (int j = std::max(0, static_cast<int>(std::ceil((p.y() - reach) / step)));
              j <= std::min(t.rows - 1, static_cast<int>(std::floor((p.y() + reach) / step))); ++j)
             for (int i = std::max(0, static_cast<int>(std::ceil((p.x() - reach) / step)));
                  i <= std::min(t.columns - 1, static_cast<int>(std::floor((p.x() + reach) / step))); ++i)
                 if (std::hypot(i * step - p.x(), j * step - p.y()) <= reach) near[index(i, j)] = 1;
-    const double margin = 0.5 * std::min(step, support.spacing) + 1e-9;
+    const double margin = 0.5 * std::min(step, support.spacing) + kRounding_px;
     for (int j = 0; j < t.rows; ++j)
         for (int i = 0; i < t.columns; ++i) {
             const Vector2d p(i * step, j * step);

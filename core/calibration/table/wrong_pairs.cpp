@@ -19,6 +19,14 @@ namespace {
 
 constexpr int kHighestDegree = 5;
 constexpr double kHarmless_px = 0.25;  // a pair this close is not wrong, however exact the others are
+constexpr double kRoughTimes = 12;  // the median, from a robust homography: what is farther is wrong at once
+constexpr double kChance = 0.001;   // that the largest of sound pairs is called wrong
+// Keep a covariance invertible: of its trace, and where that is zero.
+constexpr double kRidge = 1e-12, kLeastRidge_px2 = 1e-30;
+constexpr double kFewPairs = 20;       // their median tells no noise
+constexpr double kLeastRobust = 1e-9;  // of the noise, by the median
+constexpr double kMostF = 1e12;        // of a pair that the others leave no room
+constexpr double kWithWorst = 0.25;    // of the worst F: what is beyond goes with it
 
 // Pixel to laser, least median of squares and concentration on the better half; nullopt: none.
 std::optional<Eigen::Matrix3d> robust_homography(const Samples& s) {
@@ -72,11 +80,11 @@ std::optional<Eigen::Matrix3d> robust_homography(const Samples& s) {
 
 // Limit of F(2, freedom) that the largest of n passes with probability 0.001; exact for two numbers.
 double largest_limit(double n, double freedom) {
-    return 0.5 * freedom * (std::pow(0.001 / n, -2 / freedom) - 1);
+    return 0.5 * freedom * (std::pow(kChance / n, -2 / freedom) - 1);
 }
 
 Matrix2d invertible(Matrix2d m) {
-    m += (1e-12 * m.trace() + 1e-30) * Matrix2d::Identity();
+    m += (kRidge * m.trace() + kLeastRidge_px2) * Matrix2d::Identity();
     return m.inverse();
 }
 
@@ -96,7 +104,7 @@ bool fit_without_wrong(const std::vector<LaserPair>& pairs, const std::vector<ch
     }
     std::vector<double> sorted = error;
     std::sort(sorted.begin(), sorted.end());
-    const double limit = std::max(12 * sorted[sorted.size() / 2], kHarmless_px);
+    const double limit = std::max(kRoughTimes * sorted[sorted.size() / 2], kHarmless_px);
     used = allowed;
     for (std::size_t i = 0, k = 0; i < pairs.size(); ++i)
         if (allowed[i] && error[k++] > limit) used[i] = 0;
@@ -118,21 +126,22 @@ bool fit_without_wrong(const std::vector<LaserPair>& pairs, const std::vector<ch
             // The median of chi-squared with two degrees of freedom is 2 ln 2; many wrong pairs blow up the
             // noise but not the median.
             const double robust =
-                n < 20 ? 1 : std::clamp(order[order.size() / 2] / (2 * std::log(2.0)), 1e-9, 1.0);
+                n < kFewPairs ? 1
+                              : std::clamp(order[order.size() / 2] / (2 * std::log(2.0)), kLeastRobust, 1.0);
             std::vector<double> f(square.size());
             double worst = 0;
             for (std::size_t i = 0; i < f.size(); ++i) {
                 const double deleted = square[i] < 2 * freedom
                                            ? square[i] * (freedom - 1) / (2 * freedom - square[i])
                                            : kInfinity;
-                f[i] = std::max(std::min(deleted, 1e12), square[i] / (2 * robust));
+                f[i] = std::max(std::min(deleted, kMostF), square[i] / (2 * robust));
                 if (!(f[i] > largest_limit(n, freedom - 1))) f[i] = 0;
                 if (f[i] > 0 && map.left_out_error(i).norm() < kHarmless_px) f[i] = 0;
                 worst = std::max(worst, f[i]);
             }
             if (!(worst > 0)) break;
             for (std::size_t i = 0, k = 0; i < pairs.size(); ++i)
-                if (used[i]) used[i] = !(f[k++] > 0.25 * worst);
+                if (used[i]) used[i] = !(f[k++] > kWithWorst * worst);
         }
         // A pair that the clean map predicts was wronged by its wrong neighbours.
         bool back = false;

@@ -433,6 +433,7 @@ ContourModel::Foot ContourModel::nearest(double px, double pz, double radius) co
     if (found < 0) return foot;
     // The nearest node's edge or one of its neighbours holds the foot.
     double nearest2 = radius * radius;
+    bool past_end = false;
     const int middle = node_edge_[found];
     const int candidates[3] = {middle, edges_[middle].previous, edges_[middle].next};
     for (const int e : candidates) {
@@ -443,7 +444,10 @@ ContourModel::Foot ContourModel::nearest(double px, double pz, double radius) co
         const double beyond = std::abs(u) - edge.half;
         // An end of the contour: half a pitch more, since the surface ends somewhere before the next missing
         // point.
-        if (beyond > 0.5 * pitch_.distance && (u > 0 ? edge.next : edge.previous) < 0) continue;
+        if (beyond > 0.5 * pitch_.distance && (u > 0 ? edge.next : edge.previous) < 0) {
+            past_end = true;
+            continue;
+        }
         const double residual = v - 0.5 * edge.curvature * u * u;
         const double out = std::max(beyond, 0.0);
         const double d2 = out * out + residual * residual;
@@ -452,8 +456,11 @@ ContourModel::Foot ContourModel::nearest(double px, double pz, double radius) co
             foot.edge = e;
             foot.u = u;
             foot.residual = residual;
+            foot.beyond = out;
         }
     }
+    // Past the contour's own end, where more of the surface may follow, the way across the end drawn out is all.
+    if (past_end) foot.beyond = 0;
     return foot;
 }
 

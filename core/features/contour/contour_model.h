@@ -64,11 +64,11 @@ class ContourModel {
         int run;             // unbroken piece of contour
     };
     // Where a point falls on the curve. `u` along the edge's tangent from its middle, `residual` across
-    // (positive on the normal's side), curvature included. edge = -1: nothing within the radius, or beyond an
-    // end.
+    // (positive on the normal's side), curvature included; `beyond` how far past the edge's end, where a sheet ends or
+    // bends sharply. edge = -1: nothing within the radius, or beyond an end.
     struct Foot {
         int edge = -1;
-        double u = 0, residual = 0;
+        double u = 0, residual = 0, beyond = 0;
     };
 
     // Uses the points that are finite and not marked as outliers. At least 5 points with extent are a

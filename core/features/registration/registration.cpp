@@ -12,6 +12,8 @@ namespace {
 // A pose that meets this much of the template's length and of each direction's information needs no further
 // search.
 constexpr double kConvincingShare = 0.85, kConvincingInformation = 0.7;
+// What is known of the least determined direction beside the best, from which on no shape is small on a long straight.
+constexpr double kWellHeld = 0.15;
 // Cost of what is missing (nine for each point) up to which nothing is.
 constexpr double kComplete = 27;
 // Coarse ratings worse by this are not followed up.
@@ -126,7 +128,7 @@ void ContourMatcher::Impl::search_places(const SearchWindow& window) const {
     }
     if (finishes.empty()) return;
     // A small shape on a long straight: the straight is met everywhere, so look along it for the shape.
-    if (weakest_share < 0.15 || !convincing()) {
+    if (weakest_share < kWellHeld || !convincing()) {
         const double step = 0.25 * search.step_mm();
         const double along_reach = 2.5 * std::max(window.dx_mm, window.dz_mm);
         const double tolerance = std::max(0.3 * search.step_mm(), best.gate);
@@ -140,14 +142,20 @@ void ContourMatcher::Impl::search_places(const SearchWindow& window) const {
     }
 }
 
-// A direction of which little is met is a flat valley of the finish: the pose may still be on its way along
-// it.
+// A direction of which little is met, or that the slopes leave open, is a flat valley of the finish: the pose may still be
+// on its way along it.
 void ContourMatcher::Impl::follow(Finish& f, Support& s, double sigma) const {
     constexpr int kMostSteps = 6;
-    for (int step = 0; step < kMostSteps && s.least_informed() < kConvincingInformation; ++step) {
+    for (int step = 0; step < kMostSteps; ++step) {
+        const bool informed = s.least_informed() >= kConvincingInformation;
+        if (informed && weakest_share >= kWellHeld) return;
         const auto least = std::min_element(s.informed.begin(), s.informed.end()) - s.informed.begin();
-        const Eigen::Vector3d& twist = directions[static_cast<std::size_t>(least)].twist;
-        const Held place = held(f, s, sigma, twist);
+        Eigen::Vector3d twist = directions[static_cast<std::size_t>(least)].twist;
+        if (const Weakest weak = weakest_at(f); weak.unsure)
+            twist = weak.twist;
+        else if (informed)
+            return;
+        const Held place = held(f, s, sigma, twist, telling_difference(s));
         if (std::abs(place.shift) < 0.1 * search.step_mm()) return;
         const Finish next =
             finish(moved_along(f.pose, twist, place.shift), std::max(2 * f.gate, smallest_gate()), 1, 30);

@@ -13,29 +13,49 @@ constexpr double kSeenOfWall = 0.5;  // of its height
 constexpr int kFewestOfSlope = 4;    // points
 constexpr double kMostBare = 0.2;    // of the partners
 constexpr double kInsideWall = 0.9;  // of half its height
+constexpr double kSurelySeen = 30;   // times what the template's noise makes of a flat
 
-// One linearisation of the finish.
-struct Normal {
-    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-};
+}  // namespace
 
-Eigen::Vector3d solve_truncated(const Normal& normal, double length) {
+bool ContourMatcher::Impl::waves_alone(const Eigen::Vector3d& twist, double seen, double waves,
+                                       double weight_sum) const {
+    if (seen > kSurelySeen * waves) return false;
+    // Points on the same fitted piece share its slope's error.
+    const double per_window = model.pitch().along_x / scene.pitch.along_x;
+    double scatter = 0;
+    for (const Match& m : matches) {
+        const ContourModel::Edge& edge = model.edges()[m.foot.edge];
+        const double part = m.weight * slope_doubt[static_cast<std::size_t>(m.foot.edge)] *
+                            std::pow(registration_row(edge, m.foot.u).along.dot(twist), 2);
+        scatter += 2 * part * part * std::max(1.0, edge.count * per_window);
+    }
+    return seen - waves < weight_sum * kStraight_rad * kStraight_rad + 4 * std::sqrt(scatter) + 0.5 * waves;
+}
+
+Eigen::Vector3d ContourMatcher::Impl::solved(const Linearised& normal) const {
     // Millimetre and radian are made alike by the template's length; directions without information stay put.
-    const Eigen::Vector3d scale(1, 1, 1 / length);
-    const Eigen::Matrix3d h = scale.asDiagonal() * normal.hessian * scale.asDiagonal();
+    const Eigen::Vector3d scale(1, 1, 2 / model.extent_mm());
+    Eigen::Matrix3d h = scale.asDiagonal() * normal.hessian * scale.asDiagonal();
+    Eigen::Vector3d g = scale.cwiseProduct(normal.gradient);
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(h);
+    // So does the one along which the waves of the template's own noise would have a flat slide.
+    const Eigen::Vector3d least = eigen.eigenvectors().col(0), twist = scale.cwiseProduct(least);
+    if (waves_alone(twist, eigen.eigenvalues()[0], twist.dot(normal.waves * twist), normal.weight_sum)) {
+        const Eigen::Matrix3d rest = Eigen::Matrix3d::Identity() - least * least.transpose();
+        h = rest * h * rest;
+        g = rest * g;
+    }
+    h += scale.asDiagonal() * normal.ends_hessian * scale.asDiagonal();
+    g += scale.cwiseProduct(normal.ends_gradient);
+    eigen.compute(h);
     const double smallest = 1e-7 * eigen.eigenvalues()[2];
     Eigen::Vector3d step = Eigen::Vector3d::Zero();
-    const Eigen::Vector3d g = scale.cwiseProduct(normal.gradient);
     for (int k = 0; k < 3; ++k)
         if (eigen.eigenvalues()[k] > smallest)
             step -=
                 eigen.eigenvectors().col(k) * (eigen.eigenvectors().col(k).dot(g) / eigen.eigenvalues()[k]);
     return scale.cwiseProduct(step);
 }
-
-}  // namespace
 
 void ContourMatcher::Impl::collect(const CentredPose& pose, double gate, int stride) const {
     matches.clear();
@@ -147,30 +167,32 @@ ContourMatcher::Impl::Finish ContourMatcher::Impl::finish(const CentredPose& sta
         }
         // Biweight while the gate closes; then every partner counts alike, which is what the covariance
         // assumes.
-        Normal normal;
-        double weight_sum = 0;
+        Linearised normal;
         const double over = 1 / (current * current);
-        for (const Match& m : matches) {
+        for (Match& m : matches) {
             const RegistrationRow row = registration_row(model.edges()[m.foot.edge], m.foot.u);
             double w = 1;
             if (!settled) {
                 w = 1 - m.foot.residual * m.foot.residual * over;
                 w = w > 0 ? w * w : 0;
             }
-            weight_sum += w;
+            m.weight = w;
+            normal.weight_sum += w;
             normal.hessian.noalias() += w * row.across * row.across.transpose();
             normal.gradient += w * m.foot.residual * row.across;
+            normal.waves.noalias() +=
+                w * slope_doubt[static_cast<std::size_t>(m.foot.edge)] * row.along * row.along.transpose();
         }
-        if (!(weight_sum > 0)) break;
+        if (!(normal.weight_sum > 0)) break;
         if (!jumps.empty()) {
             collect_jumps(result.pose, current);
             const double variance = std::max(result.sigma * result.sigma, 1e-10);
             for (const JumpMatch& j : jump_matches) {
-                normal.hessian.noalias() += variance / j.variance * j.row * j.row.transpose();
-                normal.gradient += variance / j.variance * j.residual * j.row;
+                normal.ends_hessian.noalias() += variance / j.variance * j.row * j.row.transpose();
+                normal.ends_gradient += variance / j.variance * j.residual * j.row;
             }
         }
-        Eigen::Vector3d step = solve_truncated(normal, half);
+        Eigen::Vector3d step = solved(normal);
         // The turn's Jacobian is taken at the curve's point in the template's frame; shifts are turned to the
         // scene.
         double size = std::hypot(step.x(), step.y()) + std::abs(step.z()) * half;

@@ -23,6 +23,8 @@ namespace seamwright {
 inline constexpr int kFewestRegistrationPoints = 5;
 // Slopes below this (rms, radian) say nothing about where along the contour we are.
 inline constexpr double kStraight_rad = 2e-3;
+// Twice the logarithm of a likelihood ratio that tells two places.
+inline constexpr double kTelling = 12;
 
 // Row of the Jacobian of the residual, and of the motion along the curve there.
 struct RegistrationRow {
@@ -59,11 +61,14 @@ struct ContourMatcher::Impl {
     int bins = 1;
     std::vector<std::array<float, 3>> bin_information;  // [bins + jumps]
     std::vector<float> bin_across;                      // [bins] |tangent along x|
+    std::vector<double>
+        slope_doubt;  // [edges] variance of the curve's slope by the template's noise; 0 of a wall
 
     // Buffers that live as long as the matcher: after the first calls nothing is allocated.
     struct Match {
         int scene = 0;
         ContourModel::Foot foot;
+        double weight = 1;  // in the finish
     };
     // The same jump in template and scene: says where along the upper surface we are, within a pitch of each.
     struct JumpMatch {
@@ -102,6 +107,12 @@ struct ContourMatcher::Impl {
     mutable std::vector<int> wall_hits;                        // [edges]
     mutable std::vector<std::pair<double, double>> wall_seen;  // [edges] lowest and highest u that is met
     mutable std::vector<Eigen::Vector3d> wall_gradient;        // [edges]
+    struct Crossed {
+        Eigen::Vector3d of_template, of_scene, along;
+        double scene_doubt;
+        int count;
+    };
+    mutable std::vector<Crossed> crossed;  // [matches]
     mutable std::vector<double> sizes;
     mutable std::vector<float> bin_residual2;  // [bins] negative: no partner
     mutable std::vector<char> seen_x;          // whether the scene has a point in the cell along x
@@ -138,6 +149,17 @@ struct ContourMatcher::Impl {
     void collect(const CentredPose& pose, double gate, int stride) const;
     void drop_sparse_walls() const;
     void collect_jumps(const CentredPose& pose, double gate) const;
+    // One step of the finish: what the points ask for, what the ends ask for, and what of the points' is only the waves
+    // of the template's noise.
+    struct Linearised {
+        Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero(), ends_hessian = Eigen::Matrix3d::Zero(),
+                        waves = Eigen::Matrix3d::Zero();
+        Eigen::Vector3d gradient = Eigen::Vector3d::Zero(), ends_gradient = Eigen::Vector3d::Zero();
+        double weight_sum = 0;
+    };
+    Eigen::Vector3d solved(const Linearised& normal) const;
+    // Whether what `matches` seem to know of a motion along the twist may be such waves.
+    bool waves_alone(const Eigen::Vector3d& twist, double seen, double waves, double weight_sum) const;
     Finish finish(const CentredPose& start, double gate, int stride, int most_iterations) const;
     Support support(const Finish& finish, double sigma, int stride) const;
     // What the scene's points say about a motion along the twist within a search step: held where they speak
@@ -148,7 +170,9 @@ struct ContourMatcher::Impl {
     };
     // Registration::replaced_share at the pose.
     double replaced(const Finish& finish, double sigma) const;
-    Held held(const Finish& finish, const Support& here, double sigma, const Eigen::Vector3d& twist) const;
+    // `telling`: by how much the cost must exceed that of the likeliest place.
+    Held held(const Finish& finish, const Support& here, double sigma, const Eigen::Vector3d& twist,
+              double telling) const;
     Held held_by_ends(const Eigen::Vector3d& twist) const;
     void follow(Finish& finish, Support& support, double sigma) const;
     // By how much the cost of the second must exceed that of the first to be told from it.
@@ -179,14 +203,29 @@ struct ContourMatcher::Impl {
     // over many is larger, 1 + 2 (rho1 + rho2 + ...), from the residuals; at least 1.
     double correlation(const AcrossNoise& noise, double scene_variance) const;
     void add_jumps_and_walls(NormalEquations& normal, double sigma) const;
-    // The least determined direction (a twist), what is seen of it beyond the template's noise, and whether that may be
-    // chance.
+    // The scene's own direction (unit) about one of its points, over up to `reach` points to either side on the same
+    // surface; the direction's variance in parts of the noise of a point, 0 where there is none.
+    struct SceneSlope {
+        double tx = 0, tz = 0, variance = 0;
+        int count = 0;
+    };
+    SceneSlope scene_slope(int at, int reach) const;
+    // The least determined direction (a twist), what is seen of it, in points' worth, and whether that may be chance.
+    // What is seen is the product of the template's slope and the scene's, whose errors know nothing of each other: that
+    // of two flats is nothing on the average, however noisy, and so is that of a flat and a flank that it lies under.
     struct Weakest {
         Eigen::Vector3d twist, scaled;  // scaled: its farthest parts move by 1 mm per unit of length
         double seen = 0;
         bool unsure = false;
     };
-    Weakest weakest(const NormalEquations& normal, const AcrossNoise& noise) const;
+    Weakest weakest(const CentredPose& pose, const AcrossNoise& noise) const;  // of `matches`
+    Weakest weakest_at(const Finish& finish) const;                            // which it collects
+    // What of the template nobody can see at the pose, turned over or too steep for any sensor: its share of the length, and
+    // its part in Support::missing.
+    struct TurnedAway {
+        double share = 0, cost = 0;
+    };
+    TurnedAway turned_away(const CentredPose& pose) const;
     // Of the twist; `apart`: a direction that the points hold, not the slopes, with its variance.
     Eigen::Matrix3d twist_covariance(const NormalEquations& normal, const Weakest& weak,
                                      const Held& apart) const;

@@ -16,6 +16,8 @@ namespace {
 constexpr double kMissing = 9;
 // A partner lies within this part of the final gate (four sigma).
 constexpr double kPartner = 0.75;
+// A steep flank has at least so many of the points of as long a flat.
+constexpr double kLeastAcross = 0.25;
 constexpr int kMostBins = 20000;
 constexpr float kContradicted = 1e6F;
 
@@ -33,6 +35,9 @@ void ContourMatcher::Impl::learn_directions() {
                           const Eigen::Vector3d& slide) -> Eigen::Matrix3d {
         return variance * model.weights(edge, u).slope_variance * slide * slide.transpose();
     };
+    slope_doubt.clear();
+    for (const auto& edge : model.edges())
+        slope_doubt.push_back(edge.wall ? 0 : variance * model.weights(edge, 0).slope_variance);
     Eigen::Matrix3d all = Eigen::Matrix3d::Zero();
     for (const auto& edge : model.edges()) {
         if (edge.wall || edge.count < 4) continue;
@@ -123,7 +128,8 @@ ContourMatcher::Impl::Support ContourMatcher::Impl::support(const Finish& found,
     };
     for (const Match& m : matches) {
         const auto& edge = model.edges()[m.foot.edge];
-        const double size = std::abs(m.foot.residual);
+        // Beside a sheet's end nothing lies across it, and yet it is not met.
+        const double size = std::hypot(m.foot.residual, m.foot.beyond);
         ++(size > result.gate ? result.off : result.on);
         result.contradicted += thinner * (std::min(kMissing, size * size * over) - 1);
         if (edge.wall) continue;
@@ -149,7 +155,7 @@ ContourMatcher::Impl::Support ContourMatcher::Impl::support(const Finish& found,
     std::array<double, 3> met{};
     int marked = 0;
     for (int b = 0; b < bins; ++b) {
-        const double points = density * std::max(bin_across[b], 0.25F);
+        const double points = density * std::max(double(bin_across[b]), kLeastAcross);
         const bool partnered = bin_residual2[b] >= 0 && bin_residual2[b] < kContradicted;
         const double cost = points * (partnered ? std::min<double>(bin_residual2[b], kMissing) : kMissing);
         result.cost += cost;
@@ -176,6 +182,21 @@ ContourMatcher::Impl::Support ContourMatcher::Impl::support(const Finish& found,
     return result;
 }
 
+ContourMatcher::Impl::TurnedAway ContourMatcher::Impl::turned_away(const CentredPose& pose) const {
+    constexpr double kSteepest = 0.15;  // cosine
+    double away = 0, points = 0;
+    for (const ContourModel::Edge& edge : model.edges()) {
+        if (edge.wall) continue;
+        const double before = std::abs(edge.tx),
+                     now = (edge.tx < 0 ? -1 : 1) * (pose.cosine * edge.tx - pose.sine * edge.tz);
+        if (now >= std::min(kSteepest, 0.5 * before)) continue;
+        away += 2 * edge.half;
+        points += 2 * edge.half * std::max(before, kLeastAcross);
+    }
+    return {away / model.length_mm(),
+            kMissing * points / std::max(model.pitch().along_x, scene.pitch.along_x)};
+}
+
 double ContourMatcher::Impl::replaced(const Finish& found, double sigma) const {
     support(found, sigma, 1);  // marks the bins
     const double cell = 2 * std::max(scene.pitch.along_x, model.pitch().along_x);
@@ -193,7 +214,7 @@ double ContourMatcher::Impl::replaced(const Finish& found, double sigma) const {
         while (e + 1 < model.edges().size() &&
                (model.edges()[e].wall || s > arc[e] + 2 * model.edges()[e].half))
             ++e;
-        const double points = std::max(bin_across[b], 0.25F);
+        const double points = std::max(double(bin_across[b]), kLeastAcross);
         all += points;
         if (bin_residual2[b] >= 0 && bin_residual2[b] < kContradicted) continue;
         const auto& edge = model.edges()[e];
@@ -205,7 +226,7 @@ double ContourMatcher::Impl::replaced(const Finish& found, double sigma) const {
 }
 
 ContourMatcher::Impl::Held ContourMatcher::Impl::held(const Finish& found, const Support& here, double sigma,
-                                                      const Eigen::Vector3d& twist) const {
+                                                      const Eigen::Vector3d& twist, double telling) const {
     constexpr int kSide = 20;
     constexpr std::size_t kPoints = 1500;
     std::array<double, 2 * kSide + 1> cost;
@@ -220,15 +241,16 @@ ContourMatcher::Impl::Held ContourMatcher::Impl::held(const Finish& found, const
     const double least = *best;
     // Of a straight line the template's own waves tell a place: their part in the cost scatters by this.
     const double waves = std::sqrt(8 * here.on * fit_variance * model.sigma_mm() * model.sigma_mm()) / sigma;
-    const double told = least + telling_difference(here) + 3 * waves;
+    const double told = least + telling + 3 * waves;
     Held result;
     // To either side of the likeliest place: of one at the rim of what was looked at nobody knows whether it goes on.
     result.held = best != cost.begin() && *std::max_element(cost.begin(), best) > told &&
                   *std::max_element(best, cost.end()) > told;
-    // Mean and variance of the place along the direction, all of the step alike likely before.
+    // Mean and variance of the place along the direction, all of the step alike likely before, and none the likelier for
+    // what waves may make.
     double sum = 0, first = 0, second = 0;
     for (int i = -kSide; i <= kSide; ++i) {
-        const double w = std::exp(-0.5 * (cost[i + kSide] - least)), t = i * step;
+        const double w = std::exp(-0.5 * std::max(cost[i + kSide] - least - waves, 0.0)), t = i * step;
         sum += w;
         first += w * t;
         second += w * t * t;
@@ -240,7 +262,7 @@ ContourMatcher::Impl::Held ContourMatcher::Impl::held(const Finish& found, const
 
 double ContourMatcher::Impl::telling_difference(const Support& first) {
     // Each missing point may be missing by chance (clutter, occlusion): their number scatters by its root.
-    return 12 + 3 * std::sqrt(first.missing);
+    return kTelling + 3 * std::sqrt(first.missing);
 }
 
 }  // namespace seamwright

@@ -9,8 +9,8 @@ namespace {
 
 // Stated sigma of an undetermined motion, in mm at the template's farther parts.
 constexpr double kUndetermined_mm = 1e3;
-// The template counts as found when at least this share of its length has a partner...
-constexpr double kSmallestShare = 0.5;
+// The template counts as found when at least this share of its length that can be seen has a partner, and that of all...
+constexpr double kSmallestShare = 0.5, kLeastOfAll = 0.3;
 // ... and at least this share of what fixes each of its directions.
 constexpr double kSmallestInformationShare = 0.35;
 
@@ -19,6 +19,10 @@ constexpr double kMuchSeen = 0.85, kMostReplaced = 0.25;
 
 // Slopes worth fewer points than this may be chance.
 constexpr double kFewPoints = 10;
+// So many points, were they alike, at least tell of a direction.
+constexpr double kFewestTelling = 3;
+// Of a search step: ends that are known less well (a shadow that a turn moves) hold no place.
+constexpr double kEndsTell = 0.6;
 
 // Noise of neighbours is alike over this many points: interpolation onto a grid, a sensor's own smoothing, speckle.
 constexpr int kCorrelatedLags = 3;
@@ -174,37 +178,101 @@ ContourMatcher::Impl::Held ContourMatcher::Impl::held_by_ends(const Eigen::Vecto
         pull -= share * j.residual / j.variance;
     }
     Held place;
-    if (!(told > 1 / (search.step_mm() * search.step_mm()))) return place;
+    if (!(told * std::pow(kEndsTell * search.step_mm(), 2) > 1)) return place;
     place.held = true;
     place.shift = std::clamp(pull / told, -search.step_mm(), search.step_mm());
     place.variance = 1 / told;
     return place;
 }
 
-ContourMatcher::Impl::Weakest ContourMatcher::Impl::weakest(const NormalEquations& normal,
+ContourMatcher::Impl::SceneSlope ContourMatcher::Impl::scene_slope(int at, int reach) const {
+    const auto neighbours = [&](int a, int b) {
+        const double dx = scene.x[static_cast<std::size_t>(b)] - scene.x[static_cast<std::size_t>(a)],
+                     dz = scene.z[static_cast<std::size_t>(b)] - scene.z[static_cast<std::size_t>(a)];
+        return !scene.pitch.is_gap(dx, dz) && !scene.pitch.is_wall(dx, dz);
+    };
+    const int last = static_cast<int>(scene.x.size()) - 1;
+    int from = at, to = at;
+    while (from > 0 && from > at - reach && neighbours(from - 1, from)) --from;
+    while (to < last && to < at + reach && neighbours(to, to + 1)) ++to;
+    SceneSlope slope;
+    slope.count = to - from + 1;
+    if (slope.count < 3) return slope;
+    double ax = 0, az = 0;
+    for (int i = from; i <= to; ++i) {
+        const double k = i - 0.5 * (from + to);
+        ax += k * scene.x[static_cast<std::size_t>(i)];
+        az += k * scene.z[static_cast<std::size_t>(i)];
+    }
+    const double spread = slope.count * (double(slope.count) * slope.count - 1) / 12;
+    const double advance = std::hypot(ax, az) / spread;
+    if (!(advance > 0)) return slope;
+    slope.tx = ax / spread / advance;
+    slope.tz = az / spread / advance;
+    slope.variance = 1 / (spread * advance * advance);
+    return slope;
+}
+
+ContourMatcher::Impl::Weakest ContourMatcher::Impl::weakest(const CentredPose& pose,
                                                             const AcrossNoise& noise) const {
+    // So many points of the scene to a slope that noise turns it by less than about a seventh.
+    constexpr double kSureSlope = 500;
+    const double grain = scene.sigma_mm / std::max(scene.pitch.along_x, 1e-9);
+    const int reach =
+        std::clamp(static_cast<int>(std::ceil(0.5 * std::cbrt(kSureSlope * grain * grain))), 2, 20);
+    crossed.clear();
+    Eigen::Matrix3d common = Eigen::Matrix3d::Zero();
+    for (const Match& m : matches) {
+        const ContourModel::Edge& edge = model.edges()[m.foot.edge];
+        const RegistrationRow row = registration_row(edge, m.foot.u);
+        SceneSlope slope = scene_slope(m.scene, reach);
+        Crossed c{row.across, Eigen::Vector3d::Zero(), row.along, 0, 1};
+        if (slope.variance > 0) {
+            double tx = pose.cosine * slope.tx + pose.sine * slope.tz,
+                   tz = -pose.sine * slope.tx + pose.cosine * slope.tz;
+            if (tx * edge.tx + tz * edge.tz < 0) tx = -tx, tz = -tz;
+            const double qx = edge.cx + m.foot.u * edge.tx, qz = edge.cz + m.foot.u * edge.tz;
+            c.of_scene = {tz, -tx, -(tz * qz + tx * qx)};
+            c.scene_doubt = noise.mean_square * noise.relative(edge) * slope.variance;
+            c.count = slope.count;
+        }
+        common += 0.5 * (c.of_template * c.of_scene.transpose() + c.of_scene * c.of_template.transpose());
+        crossed.push_back(c);
+    }
     const Eigen::Vector3d scale(1, 1, 2 / model.extent_mm());
-    const Eigen::Matrix3d scaled = scale.asDiagonal() * normal.information * scale.asDiagonal();
+    const Eigen::Matrix3d scaled = scale.asDiagonal() * common * scale.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scaled);
     Weakest weak;
     weak.scaled = eigen.eigenvectors().col(0);
     weak.twist = scale.cwiseProduct(weak.scaled);
-    const double all = eigen.eigenvalues()[0], false_part = weak.twist.dot(normal.tilt * weak.twist);
-    weak.seen = all - false_part;
-    // Points on the same fitted piece share its slope's error.
-    const double template_variance = model.sigma_mm() * model.sigma_mm();
+    weak.seen = eigen.eigenvalues()[0];
+    // Points on the same fitted piece share its slope's error, in the template as in the scene.
     const double per_window = model.pitch().along_x / scene.pitch.along_x;
-    double scatter = 0;
-    for (const Match& m : matches) {
-        const ContourModel::Edge& edge = model.edges()[m.foot.edge];
-        const double part = template_variance * noise.relative(edge) *
-                            model.weights(edge, m.foot.u).slope_variance *
-                            std::pow(registration_row(edge, m.foot.u).along.dot(weak.twist), 2);
-        scatter += 2 * part * part * std::max(1.0, edge.count * per_window);
+    double scatter = 0, told2 = 0;
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+        const Crossed& c = crossed[i];
+        const ContourModel::Edge& edge = model.edges()[matches[i].foot.edge];
+        const double along2 = std::pow(c.along.dot(weak.twist), 2);
+        const double t = c.of_template.dot(weak.twist), s = c.of_scene.dot(weak.twist);
+        const double of_template = slope_doubt[static_cast<std::size_t>(matches[i].foot.edge)] * along2;
+        const double of_scene = c.scene_doubt * along2;
+        told2 += t * s * t * s;
+        scatter += s * s * of_template * std::max(1.0, edge.count * per_window) +
+                   t * t * of_scene * std::max(1.0, double(c.count));
     }
-    weak.unsure = weak.seen < static_cast<double>(matches.size()) * kStraight_rad * kStraight_rad +
-                                  4 * std::sqrt(scatter) + 0.5 * false_part;
+    // One point on the foot of a flank is no flank.
+    const bool lonely = weak.seen * weak.seen < kFewestTelling * told2;
+    weak.unsure = lonely || weak.seen < static_cast<double>(matches.size()) * kStraight_rad * kStraight_rad +
+                                            4 * std::sqrt(scatter);
     return weak;
+}
+
+ContourMatcher::Impl::Weakest ContourMatcher::Impl::weakest_at(const Finish& found) const {
+    collect(found.pose, found.gate, 1);
+    drop_sparse_walls();
+    return matches.size() < static_cast<std::size_t>(kFewestRegistrationPoints)
+               ? Weakest{}
+               : weakest(found.pose, across_noise());
 }
 
 Eigen::Matrix3d ContourMatcher::Impl::twist_covariance(const NormalEquations& normal, const Weakest& weak,
@@ -254,14 +322,24 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
     result.rms_mm = std::sqrt(noise.mean_square);
     result.noise_mm = std::max(std::hypot(scene.sigma_mm, model.sigma_mm()), 0.1 * model.pitch().distance);
     const NormalEquations normal = normal_equations(noise, found, rating.gate);
-    const Weakest weak = weakest(normal, noise);
+    const Weakest weak = weakest(pose, noise);
 
     // Where the slopes leave it open, what the points say about a small motion along the direction decides.
     const bool open = weak.unsure || !directions[0].determined;
-    const bool thin = jump_matches.empty() && weak.seen < kFewPoints;
     const Held ends = held_by_ends(weak.twist);
+    // What turned away with the pose is not missing.
+    const TurnedAway away = turned_away(pose);
+    Support visible = rating;
+    visible.missing = std::max(0.0, rating.missing - away.cost);
+    const bool thin = !ends.held && weak.seen < kFewPoints;
     Held place;
-    if (open || thin) place = ends.held ? ends : held(found, rating, sigma, weak.twist);
+    if (open || thin) {
+        place = ends.held ? ends : held(found, rating, sigma, weak.twist, telling_difference(visible));
+        // What holds a place there is mostly where surfaces end, in either contour no better known than its last points.
+        if (!ends.held)
+            place.variance += scene.sigma_mm * scene.sigma_mm + model.sigma_mm() * model.sigma_mm() +
+                              model.pitch().along_x * model.pitch().along_x / 12;
+    }
     const bool sliding = (open || thin) && !place.held;
     place.held = place.held && open;
     if (place.held) {
@@ -270,7 +348,7 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
         // The finish takes the waves of the template's own noise for slopes and may rest in one of them, off the ends that
         // know better: slopes count here for what they tell beyond that noise.
         const double told = 1 / ends.variance,
-                     slopes = weak.seen / std::max(found.sigma * found.sigma, 1e-10) - told;
+                     slopes = weak.seen / std::max(found.sigma * found.sigma, 1e-10);
         pose = moved_along(pose, weak.twist, ends.shift * told / (told + std::max(slopes, 0.0)));
     }
     const Eigen::Vector2d turned = set_pose();
@@ -289,11 +367,12 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
     int unmet = 0, least = 0;
     for (int k = 0; k < 3; ++k) {
         if (rating.informed[k] >= kSmallestInformationShare) continue;
-        if (held(found, rating, sigma, directions[k].twist).held) continue;
+        if (held(found, rating, sigma, directions[k].twist, telling_difference(rating)).held) continue;
         ++unmet;
         if (rating.informed[k] < rating.informed[least]) least = k;
     }
-    if (rating.share < kSmallestShare || scatter || unmet > 1) {
+    const double enough = std::max(kSmallestShare * (1 - away.share), kLeastOfAll);
+    if (rating.share < enough || scatter || unmet > 1) {
         result.status = RegistrationStatus::no_match;
     } else if (sliding || unmet > 0) {
         result.status = RegistrationStatus::sliding;

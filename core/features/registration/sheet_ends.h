@@ -1,0 +1,32 @@
+#pragma once
+// Where a sheet ends in a profile: at a step whose wall no sensor sees, at a gap. What such ends tell of a contour's place
+// is all that there is where two flats leave it open (a lap, a butt joint).
+
+#include <vector>
+
+namespace seamwright {
+
+// The end of the upper surface at a jump (a step whose wall the sensor does not see): the last point plus half of the way
+// to where the lower one begins (a pitch, or more where a point is missing or stood in the step), known to a pitch (variance
+// pitch^2 / 12). Seen from where z is larger, the upper end is seen whatever the tilt; the lower one may lie in its shadow.
+struct JumpEnd {
+    double x, z;
+    double tx, tz;        // unit, along the upper surface, outwards
+    double pitch;         // along the surface
+    double height;        // of the jump
+    double open;          // along the surface: how far the upper end and the lower beginning are apart
+    bool is_edge = true;  // a sharp end; false where the surface bends out of sight
+    bool of_gap = false;  // the rim of a gap, `height` its width
+};
+// The jump between neighbours `lower` and `upper` (indices, side by side); the surface's direction comes from
+// the points behind the upper one within the range [first, last], of noise sigma_mm: eight, or as many as it takes that
+// noise does not turn it.
+JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int lower, int upper, int first,
+                 int last, double sigma_mm);
+
+// The two rims of a gap between neighbours `before` and `before` + 1, where their surfaces are about level; a rim that
+// bends out of sight is none. False where it is no such gap.
+bool gap_ends(const std::vector<double>& x, const std::vector<double>& z, int before, int first, int last,
+              double sigma_mm, std::vector<JumpEnd>& ends);
+
+}  // namespace seamwright

@@ -458,6 +458,10 @@ void SceneView::set_part(const SceneMesh& mesh) {
     impl_->take_part(mesh, part_surface(mesh));
 }
 
+bool SceneView::has_part() const {
+    return !impl_->mesh.triangles.empty();
+}
+
 void SceneView::Impl::take_part(SceneMesh part, vtkSmartPointer<vtkPolyData> drawn) {
     mesh = std::move(part);
     surface = std::move(drawn);

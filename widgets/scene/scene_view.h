@@ -82,6 +82,7 @@ class SceneView : public QWidget {
     // part_read() says when it is shown, or that it is no PLY.
     void set_part_ply(const std::vector<std::byte>& ply);
     void set_part(const SceneMesh& mesh);                   // at once
+    bool has_part() const;                                  // it is shown
     void set_part_shift(const Pose& workobject_from_part);  // displaced part; identity at teaching
     void set_spots(const std::vector<SceneSpot>& spots);
     void set_regions(const std::vector<SceneRegion>& regions);

@@ -5,6 +5,7 @@
 #include <map>
 #include <opencv2/aruco.hpp>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "core/calibration/board/board_detectors.h"
 #include "core/calibration/board/board_saddles.h"

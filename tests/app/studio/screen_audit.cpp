@@ -367,7 +367,8 @@ QStringList unreachable(QWidget& window) {
 }
 
 QStringList cut_off(QWidget& window) {
-    QCoreApplication::sendPostedEvents();
+    QCoreApplication::sendPostedEvents(nullptr,
+                                       QEvent::LayoutRequest);  // no news that would change what is looked at
     QStringList found;
     for (QWidget* w : window.findChildren<QWidget*>()) {
         if (w->window() != &window || !on_screen(w)) continue;

@@ -208,6 +208,7 @@ TEST_F(Furniture, AFrameIsPickedOnThePartByThreeTwoOne) {
     me.step(5);
     SceneView* scene = window().views().scene;
     if (!scene->has_opengl()) GTEST_SKIP() << "no OpenGL on this display";
+    ASSERT_TRUE(QTest::qWaitFor([&] { return scene->has_part(); })) << "its mesh is read beside the window";
     scene->show_view(SceneView::View::front);
     QTest::qWait(100);
     QWidget* canvas = scene->focusProxy();
@@ -394,7 +395,7 @@ TEST_F(Furniture, FilesAreDroppedIntoTheWindow) {
     std::ofstream(folder / "door.ply", std::ios::binary)
         .write(reinterpret_cast<const char*>(mesh.data()), static_cast<std::streamsize>(mesh.size()));
     ASSERT_TRUE(drop(path("door.ply")));
-    EXPECT_FALSE(studio->desk().project().part.mesh_ply.empty());
+    EXPECT_TRUE(QTest::qWaitFor([&] { return !studio->desk().project().part.mesh_ply.empty(); }));
     studio->desk().undo_stack().undo();
     EXPECT_TRUE(studio->desk().project().part.mesh_ply.empty()) << "an import is an edit like others";
     EXPECT_FALSE(drop(path("notes.txt")));

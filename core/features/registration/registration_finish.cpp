@@ -13,20 +13,19 @@ constexpr double kSeenOfWall = 0.5;  // of its height
 constexpr int kFewestOfSlope = 4;    // points
 constexpr double kMostBare = 0.2;    // of the partners
 constexpr double kInsideWall = 0.9;  // of half its height
-constexpr double kSurelySeen = 30;   // times what the template's noise makes of a flat
+constexpr double kSurelySeen = 0.1;  // of what is known of the best direction: more than waves can feign
 
 }  // namespace
 
-bool ContourMatcher::Impl::waves_alone(const Eigen::Vector3d& twist, double seen, double waves,
-                                       double weight_sum) const {
-    if (seen > kSurelySeen * waves) return false;
+bool ContourMatcher::Impl::waves_alone(const Eigen::Vector3d& twist, double seen, double weight_sum) const {
     // Points on the same fitted piece share its slope's error.
     const double per_window = model.pitch().along_x / scene.pitch.along_x;
-    double scatter = 0;
+    double waves = 0, scatter = 0;
     for (const Match& m : matches) {
         const ContourModel::Edge& edge = model.edges()[m.foot.edge];
         const double part = m.weight * slope_doubt[static_cast<std::size_t>(m.foot.edge)] *
                             std::pow(registration_row(edge, m.foot.u).along.dot(twist), 2);
+        waves += part;
         scatter += 2 * part * part * std::max(1.0, edge.count * per_window);
     }
     return seen - waves < weight_sum * kStraight_rad * kStraight_rad + 4 * std::sqrt(scatter) + 0.5 * waves;
@@ -39,15 +38,19 @@ Eigen::Vector3d ContourMatcher::Impl::solved(const Linearised& normal) const {
     Eigen::Vector3d g = scale.cwiseProduct(normal.gradient);
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(h);
     // So does the one along which the waves of the template's own noise would have a flat slide.
-    const Eigen::Vector3d least = eigen.eigenvectors().col(0), twist = scale.cwiseProduct(least);
-    if (waves_alone(twist, eigen.eigenvalues()[0], twist.dot(normal.waves * twist), normal.weight_sum)) {
+    const Eigen::Vector3d least = eigen.eigenvectors().col(0);
+    const bool open = eigen.eigenvalues()[0] < kSurelySeen * eigen.eigenvalues()[2] &&
+                      waves_alone(scale.cwiseProduct(least), eigen.eigenvalues()[0], normal.weight_sum);
+    if (open) {
         const Eigen::Matrix3d rest = Eigen::Matrix3d::Identity() - least * least.transpose();
         h = rest * h * rest;
         g = rest * g;
     }
-    h += scale.asDiagonal() * normal.ends_hessian * scale.asDiagonal();
-    g += scale.cwiseProduct(normal.ends_gradient);
-    eigen.compute(h);
+    if (!jumps.empty()) {
+        h += scale.asDiagonal() * normal.ends_hessian * scale.asDiagonal();
+        g += scale.cwiseProduct(normal.ends_gradient);
+    }
+    if (open || !jumps.empty()) eigen.compute(h);
     const double smallest = 1e-7 * eigen.eigenvalues()[2];
     Eigen::Vector3d step = Eigen::Vector3d::Zero();
     for (int k = 0; k < 3; ++k)
@@ -180,8 +183,6 @@ ContourMatcher::Impl::Finish ContourMatcher::Impl::finish(const CentredPose& sta
             normal.weight_sum += w;
             normal.hessian.noalias() += w * row.across * row.across.transpose();
             normal.gradient += w * m.foot.residual * row.across;
-            normal.waves.noalias() +=
-                w * slope_doubt[static_cast<std::size_t>(m.foot.edge)] * row.along * row.along.transpose();
         }
         if (!(normal.weight_sum > 0)) break;
         if (!jumps.empty()) {

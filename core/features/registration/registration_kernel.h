@@ -149,17 +149,15 @@ struct ContourMatcher::Impl {
     void collect(const CentredPose& pose, double gate, int stride) const;
     void drop_sparse_walls() const;
     void collect_jumps(const CentredPose& pose, double gate) const;
-    // One step of the finish: what the points ask for, what the ends ask for, and what of the points' is only the waves
-    // of the template's noise.
+    // One step of the finish: what the points ask for and what the ends ask for.
     struct Linearised {
-        Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero(), ends_hessian = Eigen::Matrix3d::Zero(),
-                        waves = Eigen::Matrix3d::Zero();
+        Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero(), ends_hessian = Eigen::Matrix3d::Zero();
         Eigen::Vector3d gradient = Eigen::Vector3d::Zero(), ends_gradient = Eigen::Vector3d::Zero();
         double weight_sum = 0;
     };
     Eigen::Vector3d solved(const Linearised& normal) const;
-    // Whether what `matches` seem to know of a motion along the twist may be such waves.
-    bool waves_alone(const Eigen::Vector3d& twist, double seen, double waves, double weight_sum) const;
+    // Whether what `matches` seem to know of a motion along the twist may be waves of the template's noise.
+    bool waves_alone(const Eigen::Vector3d& twist, double seen, double weight_sum) const;
     Finish finish(const CentredPose& start, double gate, int stride, int most_iterations) const;
     Support support(const Finish& finish, double sigma, int stride) const;
     // What the scene's points say about a motion along the twist within a search step: held where they speak

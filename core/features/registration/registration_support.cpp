@@ -129,7 +129,8 @@ ContourMatcher::Impl::Support ContourMatcher::Impl::support(const Finish& found,
     for (const Match& m : matches) {
         const auto& edge = model.edges()[m.foot.edge];
         // Beside a sheet's end nothing lies across it, and yet it is not met.
-        const double size = std::hypot(m.foot.residual, m.foot.beyond);
+        const double size =
+            m.foot.beyond > 0 ? std::hypot(m.foot.residual, m.foot.beyond) : std::abs(m.foot.residual);
         ++(size > result.gate ? result.off : result.on);
         result.contradicted += thinner * (std::min(kMissing, size * size * over) - 1);
         if (edge.wall) continue;

@@ -186,10 +186,12 @@ ContourMatcher::Impl::Held ContourMatcher::Impl::held_by_ends(const Eigen::Vecto
 }
 
 ContourMatcher::Impl::SceneSlope ContourMatcher::Impl::scene_slope(int at, int reach) const {
+    constexpr double kNeighbours = 5;  // pitches
+    const double near = kNeighbours * scene.pitch.distance;
     const auto neighbours = [&](int a, int b) {
         const double dx = scene.x[static_cast<std::size_t>(b)] - scene.x[static_cast<std::size_t>(a)],
                      dz = scene.z[static_cast<std::size_t>(b)] - scene.z[static_cast<std::size_t>(a)];
-        return !scene.pitch.is_gap(dx, dz) && !scene.pitch.is_wall(dx, dz);
+        return dx * dx + dz * dz < near * near;
     };
     const int last = static_cast<int>(scene.x.size()) - 1;
     int from = at, to = at;
@@ -205,7 +207,7 @@ ContourMatcher::Impl::SceneSlope ContourMatcher::Impl::scene_slope(int at, int r
         az += k * scene.z[static_cast<std::size_t>(i)];
     }
     const double spread = slope.count * (double(slope.count) * slope.count - 1) / 12;
-    const double advance = std::hypot(ax, az) / spread;
+    const double advance = std::sqrt(ax * ax + az * az) / spread;
     if (!(advance > 0)) return slope;
     slope.tx = ax / spread / advance;
     slope.tz = az / spread / advance;

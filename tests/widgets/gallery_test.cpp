@@ -274,6 +274,7 @@ TEST(Gallery, Scene) {
     view.set_part_ply({std::byte{1}, std::byte{2}});
     ASSERT_TRUE(read.wait());
     EXPECT_FALSE(read.takeFirst().front().toBool());
+    EXPECT_FALSE(view.has_part()) << "another part stands there";
     const std::string ply =
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
         "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n500 0 0\n0 500 0\n3 0 1 "

@@ -448,8 +448,10 @@ void SceneView::set_part_ply(const std::vector<std::byte>& ply) {
         return std::pair(std::move(mesh), std::move(surface));
     };
     impl_->reading.run(read, [this](Expected<std::pair<SceneMesh, Surface>> part) {
-        if (part) impl_->take_part(std::move(part->first), part->second);
-        emit part_read(part.has_value());
+        const bool readable = part.has_value();
+        if (!readable) part.emplace(SceneMesh(), part_surface({}));  // the one before is not this one's
+        impl_->take_part(std::move(part->first), part->second);
+        emit part_read(readable);
     });
 }
 

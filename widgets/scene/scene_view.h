@@ -79,7 +79,7 @@ class SceneView : public QWidget {
     ~SceneView() override;
 
     // Binary or ASCII PLY, millimetres, as in PartSetup::mesh_ply; empty bytes remove the part. Read beside the window:
-    // part_read() says when it is shown, or that it is no PLY.
+    // part_read() says when it is shown, or that it is no PLY and nothing is.
     void set_part_ply(const std::vector<std::byte>& ply);
     void set_part(const SceneMesh& mesh);                   // at once
     bool has_part() const;                                  // it is shown

@@ -1,8 +1,10 @@
 #include "projects/measure/measure.h"
+#include "projects/measure/reference_feature.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/features/kinds/feature_registry.h"
 #include "tests/allocations.h"
 #include "tests/projects/fake_cell.h"
 #include "tests/projects/sample_project.h"
@@ -210,7 +212,8 @@ TEST(Allocations, NoneAfterTheFirstProfile) {
         std::vector<Frame> frames(6);
         for (std::size_t i = 0; i < frames.size(); ++i) {
             if (std::string(id) == "S1") {
-                draw_stripe(frames[i], stripe_camera(), 12.7 - 0.2 * static_cast<double>(i % 3), 5.0, 0.1, kFaint);
+                draw_stripe(frames[i], stripe_camera(), 12.7 - 0.2 * static_cast<double>(i % 3), 5.0, 0.1,
+                            kFaint);
             } else {
                 frames[i].profile = cell->cut(cell->project.spots[1]);
                 bend(frames[i].profile);
@@ -228,6 +231,36 @@ TEST(Allocations, NoneAfterTheFirstProfile) {
         EXPECT_EQ(measurer->measure(frames[0], reported).status, SpotStatus::measured)
             << measurer->measure(frames[0]).message;
     }
+}
+
+// Remembered answers are those of the finder, and of nothing but the same question.
+TEST(ReferenceFeature, IsWhatTheRecipeFindsThere) {
+    Spot spot;
+    spot.feature.kind = "contour-end";
+    spot.feature.parameters = {{"side", 1}};
+    for (int i = 0; i < 200; ++i) {
+        spot.reference_profile.x_mm.push_back(0.1 * i);
+        spot.reference_profile.z_mm.push_back(0.01 * std::sin(12.9 * i));
+        spot.reference_profile.segment.push_back(0);
+    }
+    const auto as_found = [&] {
+        const Feature found = make_feature_finder(spot.feature).value()->find(spot.reference_profile);
+        EXPECT_EQ(found.status, FeatureStatus::ok);
+        for (int again = 0; again < 2; ++again) {
+            const auto known = feature_at_reference(spot);
+            EXPECT_TRUE(known && known->point_mm == found.point_mm &&
+                        known->covariance_mm2 == found.covariance_mm2);
+        }
+        return found.point_mm;
+    };
+    const Eigen::Vector2d first = as_found();
+    for (double& x : spot.reference_profile.x_mm) x += 0.25;
+    const Eigen::Vector2d moved = as_found();
+    EXPECT_NEAR(moved.x() - first.x(), 0.25, 1e-6);
+    spot.feature.parameters["side"] = 0;
+    EXPECT_LT(as_found().x(), moved.x() - 10);
+    spot.reference_profile.clear();
+    EXPECT_FALSE(feature_at_reference(spot));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <tl/expected.hpp>
 
 #include "core/text.h"
+#include "core/value_type.h"
 
 namespace seamwright {
 
@@ -28,6 +29,9 @@ enum class ErrorCode {
 
 // One clear sentence: what is wrong, where, and how to mend it. `where` and `mend` may be empty.
 struct Error {
+    SEAM_VALUE_TYPE(Error);
+    Error(ErrorKind its_kind, Text its_what, Text its_where = {}, Text its_mend = {},
+          ErrorCode its_code = ErrorCode::none);
     ErrorKind kind = ErrorKind::input;
     Text what;   // "the rotation is not orthonormal (off by 0.02)"
     Text where;  // "spots[3].workobject_from_sensor"
@@ -42,21 +46,11 @@ struct Error {
 template <class T>
 using Expected = tl::expected<T, Error>;
 
-inline tl::unexpected<Error> input_error(Text what, Text where = {}, Text mend = {}) {
-    return tl::unexpected(Error{ErrorKind::input, std::move(what), std::move(where), std::move(mend)});
-}
-inline tl::unexpected<Error> usage_error(Text what, Text where = {}, Text mend = {}) {
-    return tl::unexpected(Error{ErrorKind::usage, std::move(what), std::move(where), std::move(mend)});
-}
-inline tl::unexpected<Error> device_error(Text what, Text where = {}, Text mend = {}) {
-    return tl::unexpected(Error{ErrorKind::device, std::move(what), std::move(where), std::move(mend)});
-}
-inline tl::unexpected<Error> device_error(ErrorCode code, Text what, Text where = {}, Text mend = {}) {
-    return tl::unexpected(Error{ErrorKind::device, std::move(what), std::move(where), std::move(mend), code});
-}
-inline tl::unexpected<Error> file_error(Text what, Text where = {}, Text mend = {}) {
-    return tl::unexpected(Error{ErrorKind::file, std::move(what), std::move(where), std::move(mend)});
-}
+tl::unexpected<Error> input_error(Text what, Text where = {}, Text mend = {});
+tl::unexpected<Error> usage_error(Text what, Text where = {}, Text mend = {});
+tl::unexpected<Error> device_error(Text what, Text where = {}, Text mend = {});
+tl::unexpected<Error> device_error(ErrorCode code, Text what, Text where = {}, Text mend = {});
+tl::unexpected<Error> file_error(Text what, Text where = {}, Text mend = {});
 
 }  // namespace seamwright
 

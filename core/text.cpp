@@ -40,6 +40,12 @@ std::string chain_of(std::size_t count, std::string_view between) {
 
 }  // namespace
 
+SEAM_VALUE_TYPE_MEMBERS(Text)
+
+bool Text::operator==(const Text&) const = default;
+
+Text::Text(Literal, std::string_view english) : key_(english) {}
+
 Text::Text(std::string said) {
     if (said.empty()) return;
     key_ = "{}";

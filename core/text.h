@@ -21,6 +21,8 @@
 #include <variant>
 #include <vector>
 
+#include "core/value_type.h"
+
 namespace seamwright {
 
 enum class Language { english, german };
@@ -36,16 +38,16 @@ class Text {
     // below 2^63.
     using Argument = std::variant<std::string, double, std::int64_t, Text>;
 
-    Text() = default;
+    SEAM_VALUE_TYPE(Text);
     // A sentence of the program without arguments; braces in it are signs like others.
     template <class T>
     requires(std::is_array_v<T> || std::is_same_v<T, const char*>) Text(const T& english)
-        : key_(english) {}  // NOLINT(google-explicit-constructor): a literal is a sentence
+        : Text(Literal(), english) {}  // NOLINT(google-explicit-constructor): a literal is a sentence
     // Words of somebody else: a library, a device, a person, an old file.
     Text(std::string said);  // NOLINT(google-explicit-constructor): most sentences name a thing
     template <class First, class... Rest>
     explicit Text(fmt::format_string<First, Rest...> english, First&& first, Rest&&... rest)
-        : key_(fmt::string_view(english).data(), fmt::string_view(english).size()) {
+        : Text(Literal(), {fmt::string_view(english).data(), fmt::string_view(english).size()}) {
         take(std::forward<First>(first));
         (take(std::forward<Rest>(rest)), ...);
     }
@@ -74,7 +76,7 @@ class Text {
     std::string in(Language language) const;
     std::string english() const { return in(Language::english); }
 
-    bool operator==(const Text&) const = default;
+    bool operator==(const Text&) const;
     // Friends, so that no std::string becomes a Text to be compared.
     template <class S>
     requires std::is_convertible_v<const S&, std::string_view>
@@ -88,6 +90,8 @@ class Text {
     friend std::ostream& operator<<(std::ostream& out, const Text& text) { return text.print(out); }
 
   private:
+    struct Literal {};
+    Text(Literal, std::string_view english);
     std::string formatted(std::string_view pattern, Language language) const;  // throws fmt::format_error
     std::ostream& print(std::ostream& out) const;
     void add(std::string value);

@@ -11,6 +11,7 @@
 #include "core/geometry/pose.h"
 #include "core/statistics/drift_chart.h"
 #include "core/text.h"
+#include "core/value_type.h"
 
 namespace seamwright {
 
@@ -48,6 +49,7 @@ struct SetAside {
 };
 
 struct DriftWatch {
+    SEAM_VALUE_TYPE(DriftWatch);
     std::string id = "watch";
     std::vector<std::string> spot_ids;
     int every_parts = 1;        // it is due after so many; 0: not by parts
@@ -64,6 +66,7 @@ struct DriftWatch {
 
 // The reference measured once. Stored beside the runs, and kept when these are deleted.
 struct DriftPoint {
+    SEAM_VALUE_TYPE(DriftPoint);
     std::int64_t id = 0, run = 0;
     std::string utc;
     std::uint32_t mark = 0;              // of what it was measured with: spots, poses, features, calibrations
@@ -77,6 +80,7 @@ struct DriftPoint {
 
 // What the watch said of a run, and what was taken off its measurements.
 struct ActingDrift {
+    SEAM_VALUE_TYPE(ActingDrift);
     DriftVerdict verdict = DriftVerdict::learning;
     Text text;
     bool compensated = false;

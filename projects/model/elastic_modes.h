@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/elastic/elastic_solve.h"
+#include "core/value_type.h"
 
 namespace seamwright {
 
@@ -17,6 +18,7 @@ struct LearntRun {
 };
 
 struct RegionModes {
+    SEAM_VALUE_TYPE(RegionModes);
     std::string id;  // the region's
     bool on = false;
     std::string learnt_utc, switched_utc;  // ISO 8601; the second empty: never switched
@@ -28,6 +30,7 @@ struct RegionModes {
 
 // What the modes did in a region's run, where they were switched on.
 struct ActingModes {
+    SEAM_VALUE_TYPE(ActingModes);
     bool acted = false;  // else the rigid answer stands
     Text why;            // not acted: the reason
     std::vector<double> amplitudes_mm, sigma_mm;

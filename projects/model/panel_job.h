@@ -16,11 +16,13 @@
 #include "core/geometry/pose.h"
 #include "core/panel/panel_fit.h"
 #include "core/profile/profile.h"
+#include "core/value_type.h"
 
 namespace seamwright {
 
 // References, gap and flush are taught with the panel in its zero position (panel_station.h: teach_panel).
 struct PanelPlace {
+    SEAM_VALUE_TYPE(PanelPlace);
     std::string id;                // "P1"
     std::string sensor_id;         // of the project, on this job's gripper
     std::string second_sensor_id;  // of a double head; empty = none
@@ -48,6 +50,7 @@ struct PanelSensitivity {
 };
 
 struct PanelJob {
+    SEAM_VALUE_TYPE(PanelJob);
     std::string id;  // "door left"
     std::string robot_id;
     std::vector<PanelPlace> places;

@@ -25,6 +25,7 @@
 #include "core/profile/stripe/peaks.h"
 #include "core/profile/stripe/stripe_light.h"
 #include "core/text.h"
+#include "core/value_type.h"
 #include "devices/profile_source.h"
 #include "devices/robot_link.h"
 #include "projects/model/drift_watch.h"
@@ -56,6 +57,7 @@ struct PartSetup {
 };
 
 struct SensorSetup {
+    SEAM_VALUE_TYPE(SensorSetup);
     std::string id;      // "A"
     std::string driver;  // registry name
     nlohmann::json settings = nlohmann::json::object();
@@ -66,6 +68,7 @@ struct SensorSetup {
 };
 
 struct RobotSetup {
+    SEAM_VALUE_TYPE(RobotSetup);
     std::string id;  // "R1"
     std::string driver;
     nlohmann::json settings = nlohmann::json::object();
@@ -96,6 +99,7 @@ struct NozzleTip {
 // A calibration that turns a sensor's frames into millimetres on the flange; or, with `nozzle`, where the robot's nozzle
 // is: the newest one of a robot that serves is in use (projects/measure/nozzle.h).
 struct Calibration {
+    SEAM_VALUE_TYPE(Calibration);
     std::string id;
     std::string method;  // "simulated truth", "tcp-sphere", "stripe-camera", "factory", ...
     std::string sensor_id, robot_id;
@@ -158,6 +162,7 @@ struct SpotLight {
 };
 
 struct Spot {
+    SEAM_VALUE_TYPE(Spot);
     std::string id;       // "S1", one of a kind in the project, whatever its type
     std::string type_id;  // the part type; empty: of a project without types
     std::string sensor_id, robot_id;
@@ -207,6 +212,7 @@ struct KeptOffset {
 };
 
 struct Region {
+    SEAM_VALUE_TYPE(Region);
     std::string id;       // "R1"
     std::string type_id;  // as that of its spots
     std::vector<std::string> spot_ids;
@@ -250,6 +256,7 @@ struct Requirements {
 };
 
 struct Project {
+    SEAM_VALUE_TYPE(Project);
     std::string name;
     Requirements requirements;
     PartSetup part;

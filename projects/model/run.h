@@ -16,6 +16,7 @@
 #include "core/profile/profile.h"
 #include "core/profile/stripe/stripe_light.h"
 #include "core/text.h"
+#include "core/value_type.h"
 #include "devices/capture/capture.h"
 #include "projects/model/drift_watch.h"
 #include "projects/model/elastic_modes.h"
@@ -33,6 +34,7 @@ enum class SpotStatus {
 std::string_view to_string(SpotStatus status);
 
 struct SpotMeasurement {
+    SEAM_VALUE_TYPE(SpotMeasurement);
     std::string spot_id;
     SpotStatus status = SpotStatus::not_measured;
     Text message;                                           // empty when measured, else why, in plain words
@@ -85,6 +87,7 @@ struct ActingOffset {
 Text said_of(const ActingOffset& offset);  // "kept offset 2 acts: X 0.100 ... mm are taken off"
 
 struct RegionRecord {
+    SEAM_VALUE_TYPE(RegionRecord);
     std::string region_id;
     std::optional<RegionCorrection>
         correction;  // absent when too little was measured to solve; `refusals` says so
@@ -99,6 +102,7 @@ struct RegionRecord {
 
 // One place of a panel job (panel_job.h), in the place's frame.
 struct PanelMeasurement {
+    SEAM_VALUE_TYPE(PanelMeasurement);
     std::string place_id;
     SpotStatus status = SpotStatus::not_measured;
     Text message;  // empty when measured
@@ -133,6 +137,7 @@ struct PanelServo {
 };
 
 struct PanelRecord {
+    SEAM_VALUE_TYPE(PanelRecord);
     std::string job_id;
     std::vector<PanelMeasurement> before, after;  // enabled places; `after` the motion, empty without one
     std::optional<PanelFit> fit;  // of `before`; absent when it could not be solved, `refusals` says so
@@ -178,6 +183,7 @@ std::string_view to_string(RunStatus status);
 std::optional<RunStatus> run_status_from(std::string_view name);
 
 struct RunRecord {
+    SEAM_VALUE_TYPE(RunRecord);
     std::int64_t number = 0;  // given by the file, 1..
     std::string part_id;
     std::string type_id;  // of the part; empty: of a project without types

@@ -360,22 +360,24 @@ nlohmann::json essence(const RobotSetup& robot) {
 nlohmann::json essence(const Calibration* calibration) {
     if (!calibration) return {};
     // All but the data it was solved from and what was reported, which are megabytes: asked for every spot with every edit.
-    const Calibration& c = *calibration;
-    return to_json_document(Calibration{.id = c.id,
-                                        .method = c.method,
-                                        .sensor_id = c.sensor_id,
-                                        .robot_id = c.robot_id,
-                                        .sensor_identity = c.sensor_identity,
-                                        .robot_identity = c.robot_identity,
-                                        .created_utc = c.created_utc,
-                                        .source = c.source,
-                                        .model = c.model,
-                                        .flange_from_sensor = c.flange_from_sensor,
-                                        .covariance = c.covariance,
-                                        .scale_sigma = c.scale_sigma,
-                                        .shear_sigma = c.shear_sigma,
-                                        .verdict = c.verdict,
-                                        .nozzle = c.nozzle});
+    const Calibration& all = *calibration;
+    Calibration c;
+    c.id = all.id;
+    c.method = all.method;
+    c.sensor_id = all.sensor_id;
+    c.robot_id = all.robot_id;
+    c.sensor_identity = all.sensor_identity;
+    c.robot_identity = all.robot_identity;
+    c.created_utc = all.created_utc;
+    c.source = all.source;
+    c.model = all.model;
+    c.flange_from_sensor = all.flange_from_sensor;
+    c.covariance = all.covariance;
+    c.scale_sigma = all.scale_sigma;
+    c.shear_sigma = all.shear_sigma;
+    c.verdict = all.verdict;
+    c.nozzle = all.nozzle;
+    return to_json_document(c);
 }
 
 template <class T>

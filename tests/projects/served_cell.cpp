@@ -1,0 +1,137 @@
+#include "tests/projects/served_cell.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "devices/capture/capture.h"
+#include "devices/exchange/pose_json.h"
+#include "devices/net/socket.h"
+#include "devices/simulated/scene/door.h"
+#include "projects/station/acquire.h"
+#include "projects/station/teach.h"
+
+namespace seamwright {
+
+Expected<ServedCell> serve_cell(const ServedCellOptions& options, const std::filesystem::path& file) {
+    ServedCell served;
+    const std::uint16_t port = TcpListener::listen("127.0.0.1", 0)->port();
+    const nlohmann::json frame = pose_json(default_cell_settings().base_from_workobject);
+    auto cell = SimulatedCell::open({{"seed", 5},
+                                     {"optics", {{"width", options.width}, {"height", options.height}}},
+                                     {"buffers", 64},
+                                     {"robot",
+                                      {{"repeatability_mm", 0.01},
+                                       {"repeatability_deg", 0.001},
+                                       {"trigger_jitter_mm", 0.5},
+                                       {"frames", {{"path", frame}}}}}});
+    if (!cell) return tl::unexpected(cell.error());
+    served.cell = *cell;
+
+    Project p;
+    p.name = "served door";
+    p.part.base_from_workobject = served.cell->base_from_workobject();
+    SensorSetup sensor;
+    sensor.id = "A";
+    sensor.driver = "genicam";
+    sensor.settings = {{"hardware_trigger", true}, {"buffers", 32}};
+    nlohmann::json ports;
+    if (options.gocator) {
+        for (const char* name : {"control_port", "data_port", "ascii_port"})
+            ports[name] = TcpListener::listen("127.0.0.1", 0)->port();
+        sensor.driver = "gocator";
+        sensor.settings.update({{"address", "127.0.0.1"},
+                                {"control_port", ports["control_port"]},
+                                {"data_port", ports["data_port"]}});
+        served.sensor_options.gocator = ports;
+    } else {
+        // An address of this process alone: a camera that is away for a while finds it free when it is back.
+        const int id = static_cast<int>(::getpid());
+        served.sensor_options.camera_address =
+            fmt::format("127.{}.{}.{}", 10 + id / 62500 % 200, 1 + id / 250 % 250, 1 + id % 250);
+    }
+    auto sensor_server = CellServer::start(served.sensor_options, served.cell);
+    if (!sensor_server) return tl::unexpected(sensor_server.error());
+    served.sensor.emplace(std::move(*sensor_server));
+    if (!options.gocator)
+        sensor.settings["address"] = served.sensor_options.camera_address = served.sensor->camera_address();
+    sensor.calibration_id = "truth";
+    RobotSetup robot;
+    robot.id = "R1";
+    robot.driver = options.driver;
+    robot.settings = {{"port", port}};
+    // A UR's arm is commanded once in its cycle, which bounds how much faster than real it can be.
+    const double time_scale =
+        options.driver == "ur-rtde" ? std::min(options.time_scale, 20.0) : options.time_scale;
+    nlohmann::json controller = {{"port", port}, {"time_scale", time_scale}};
+    if (options.driver == "ur-rtde")
+        robot.settings["dashboard_port"] = controller["dashboard_port"] =
+            TcpListener::listen("127.0.0.1", 0)->port();
+    Calibration c;
+    c.id = "truth";
+    c.method = "simulated truth";
+    c.sensor_id = "A";
+    c.robot_id = "R1";
+    c.model = served.cell->sensor_model();
+    c.flange_from_sensor = served.cell->flange_from_sensor();
+    c.verdict = Verdict::good;
+    c.created_utc = utc_now();
+    Region region;
+    region.id = "all";
+    region.frame_name = "path";
+    region.sigma_limit_mm = 1;
+    region.sigma_limit_deg = 0.5;
+    region.base_from_frame = p.part.base_from_workobject;
+    for (const DoorSpot& door : default_door_spots()) {
+        Spot s;
+        s.id = door.id;
+        s.sensor_id = "A";
+        s.robot_id = "R1";
+        s.base_from_flange = served.cell->flange_for(door.workobject_from_sensor);
+        s.feature.kind = "contour-end";
+        s.feature.parameters = {{"side", 0}, {"segment", 1}};
+        s.sigma_mm = 0.2;
+        s.required = false;
+        p.spots.push_back(s);
+        region.spot_ids.push_back(s.id);
+    }
+    p.regions = {region};
+    p.sensors = {sensor};
+    p.robots = {robot};
+    p.calibrations = {c};
+
+    served.robot_options.controllers = {{options.driver, controller}};
+    served.robot_options.program = measuring_program(p, "R1");
+    auto robot_server = CellServer::start(served.robot_options, served.cell);
+    if (!robot_server) return tl::unexpected(robot_server.error());
+    served.robot.emplace(std::move(*robot_server));
+
+    auto created = ProjectFile::create(file, p, true);
+    if (!created) return tl::unexpected(created.error());
+    served.station.emplace(std::move(*created), p);
+    Station& station = *served.station;
+    if (auto connected = station.connect(); !connected) return tl::unexpected(connected.error());
+    p = station.project();
+    p.calibrations[0].sensor_identity = p.sensors[0].identity;
+    p.calibrations[0].robot_identity = p.robots[0].identity;
+    auto taught = station.run({});
+    if (!taught) return tl::unexpected(taught.error());
+    for (std::size_t i = 0; i < p.spots.size(); ++i) {
+        const SpotMeasurement& m = taught->spots[i];
+        if (m.status == SpotStatus::measured) p.spots[i].reference_mm = m.measured_mm;
+    }
+    if (auto saved = station.edit(p); !saved) return tl::unexpected(saved.error());
+    if (options.lost_packets_per_mille > 0) {  // from here on
+        station.disconnect();
+        served.sensor.reset();
+        served.sensor_options.camera = {{"lost_packets_per_mille", options.lost_packets_per_mille}};
+        auto lossy = CellServer::start(served.sensor_options, served.cell);
+        if (!lossy) return tl::unexpected(lossy.error());
+        served.sensor.emplace(std::move(*lossy));
+        if (auto connected = station.connect(); !connected) return tl::unexpected(connected.error());
+    }
+    return served;
+}
+
+}  // namespace seamwright

@@ -1,7 +1,7 @@
 #include "projects/file/project_json.h"
 
 #include "devices/exchange/json_fields.h"
-#include "projects/file/project_json_detail.h"
+#include "projects/file/json/described.h"
 
 namespace seamwright {
 

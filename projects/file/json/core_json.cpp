@@ -1,6 +1,6 @@
 // What devices and core measure with and answer.
 
-#include "projects/file/project_json_detail.h"
+#include "projects/file/json/described.h"
 
 namespace seamwright {
 

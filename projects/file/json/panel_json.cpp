@@ -1,6 +1,6 @@
 // Panel jobs, and what a run of one leaves behind.
 
-#include "projects/file/project_json_detail.h"
+#include "projects/file/json/described.h"
 
 namespace seamwright {
 

@@ -1,6 +1,6 @@
 // What was proven, and the data that settings were measured from.
 
-#include "projects/file/project_json_detail.h"
+#include "projects/file/json/described.h"
 
 namespace seamwright {
 

@@ -1,6 +1,6 @@
 // What a run says of its spots and regions.
 
-#include "projects/file/project_json_detail.h"
+#include "projects/file/json/described.h"
 
 namespace seamwright {
 

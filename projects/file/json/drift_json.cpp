@@ -1,6 +1,6 @@
 // The drift watch: what it learnt, its points, how it acts in a run.
 
-#include "projects/file/project_json_detail.h"
+#include "projects/file/json/described.h"
 
 namespace seamwright {
 

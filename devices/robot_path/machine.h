@@ -71,6 +71,8 @@ struct NamedPose {
     std::optional<Pose> pose;
 };
 
+// Its values and expressions are machine_values.cpp, its points machine_motions.cpp, its routines, branches and loops
+// machine_flow.cpp.
 class Machine {
   public:
     Machine(Dialect dialect, const ProgramPathOptions& options) : dialect_(dialect), options_(options) {}

@@ -1,6 +1,6 @@
 #pragma once
-// Shared by the parts of the project file: project_file.cpp (making, opening, migrating), project_rows.cpp
-// (the project's entities), project_runs.cpp (runs, setups, events).
+// Shared by the parts of the project file: project_file.cpp (making, opening, migrating), project_check.cpp, users.cpp, and
+// rows/ with a file for each kind of row.
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -86,7 +86,7 @@ Expected<void> for_each_row(Statement& s, Read read) {
     }
 }
 
-// project_rows.cpp; within the caller's transaction. Says what it changed, in the words of the chain's entries.
+// rows/project_rows.cpp; within the caller's transaction. Says what it changed, in the words of the chain's entries.
 struct RowChange {
     std::string table, id;
     bool gone = false;
@@ -95,6 +95,15 @@ struct RowChange {
 Expected<std::vector<RowChange>> save_rows_of(Database& db, const Project& project);
 Expected<void> chain_changes(Database& db, const std::string& person, const std::vector<RowChange>& changes);
 Expected<Project> load_rows_of(Database& db);
+
+// rows/event_rows.cpp; within the caller's transaction.
+Expected<std::int64_t> insert_event(Database& db, const std::string& person, const EventRecord& event,
+                                    std::int64_t run);
+// rows/capture_rows.cpp; within the caller's transaction. Behind those captures of the run that are `stored`; adds the
+// digests of the rows it makes.
+Expected<void> insert_captures(Database& db, std::span<const Capture> all, std::int64_t number,
+                               StoredMeasurements& stored);
+Expected<void> load_captures(Database& db, RunRecord& run);
 
 struct ProjectFile::Impl {
     std::filesystem::path path;

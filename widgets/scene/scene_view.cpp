@@ -8,69 +8,16 @@
 #include <QKeyEvent>
 #include <QLabel>
 #include <QMenu>
-#include <QPainter>
 #include <QVBoxLayout>
 #include <algorithm>
-#include <map>
 
-#include "widgets/aside.h"
 #include "widgets/picture_file.h"
-#include "widgets/scene/scene_canvas.h"
-#include "widgets/scene/scene_managers.h"
+#include "widgets/scene/scene_view_impl.h"
 #include "widgets/style.h"
 #include "widgets/view_bar.h"
 
 namespace seamwright {
-
 namespace {
-
-// Words over the picture in the window's own font.
-struct SceneLabels {
-    struct Label {
-        QPointF at;
-        QString text;
-        QColor colour;
-        bool strong;
-    };
-    std::vector<Label> labels;
-    QString foot;
-
-    void paint(QPainter& painter, const QWidget& owner) const {
-        QColor ground = owner.palette().color(QPalette::Base);
-        ground.setAlpha(205);
-        painter.setFont(owner.font());
-        const QFontMetrics metrics(owner.font());
-        std::vector<QRectF> taken;
-        const QRectF view = QRectF(owner.rect()).adjusted(2, 2, -2, -2);
-        for (const Label& label : labels) {
-            if (!view.contains(label.at)) continue;
-            QRectF box(label.at + QPointF(11, -metrics.height() - 3),
-                       QSizeF(metrics.horizontalAdvance(label.text) + 10, metrics.height() + 2));
-            // Whole: what would reach beyond the view stands beside its rim.
-            box.translate(std::max(std::min(0.0, view.right() - box.right()), view.left() - box.left()),
-                          std::max(0.0, view.top() - box.top()));
-            // Labels that would cover another one move down.
-            for (int tries = 0; tries < 6; ++tries) {
-                const bool covered = std::any_of(taken.begin(), taken.end(),
-                                                 [&](const QRectF& t) { return t.intersects(box); });
-                if (!covered) break;
-                box.translate(0, metrics.height() + 3);
-            }
-            taken.push_back(box);
-            painter.fillRect(box, ground);
-            if (label.strong) {
-                painter.setPen(QPen(label.colour, 2));
-                painter.drawRect(box);
-            }
-            painter.setPen(label.colour);
-            painter.drawText(box, Qt::AlignCenter, label.text);
-        }
-        if (!foot.isEmpty()) {
-            painter.setPen(style::quiet_text(owner.palette()));
-            painter.drawText(owner.rect().adjusted(8, 4, -8, -6), Qt::AlignBottom | Qt::AlignLeft, foot);
-        }
-    }
-};
 
 // What would give the same picture is not drawn again.
 bool same(const Pose& a, const Pose& b) {
@@ -106,52 +53,6 @@ bool same(const std::vector<T>& a, const std::vector<T>& b) {
 
 }  // namespace
 
-struct SceneView::Impl {
-    SceneView& view;
-    SceneCanvas* canvas = nullptr;
-    QWidget* toolbar = nullptr;
-    QLabel* sentence = nullptr;
-    std::map<Layer, std::unique_ptr<LayerManager>> layers;
-    std::map<Layer, QAction*> actions;
-    std::map<Layer, bool> shown;
-    SceneMesh mesh;
-    vtkSmartPointer<vtkPolyData> surface = part_surface({});  // of the mesh
-    std::vector<SceneSpot> spots;
-    std::vector<SceneRegion> regions;
-    ScenePath path;
-    std::vector<SceneEdge> edges;
-    std::vector<std::string> chosen_edges;
-    std::string lit_edge;
-    std::vector<SceneSpot> proposed;
-    std::string held;  // of them
-    std::vector<Eigen::Vector3d> picks;
-    std::optional<SceneRobot> robot, next_robot;
-    Pose part_shift = Pose::Identity();
-    std::string spot, region;
-    double scale = 20;
-    bool first_fit = true;
-    Aside reading;  // last: its end waits
-
-    explicit Impl(SceneView& owner) : view(owner) {}
-    LayerManager* manager(Layer layer) {
-        const auto found = layers.find(layer);
-        return found == layers.end() ? nullptr : found->second.get();
-    }
-    void make_layers();
-    void restyle();
-    void redraw(Layer layer);
-    void redraw_all();
-    void take_part(SceneMesh part, vtkSmartPointer<vtkPolyData> drawn);
-    SceneLabels words() const;
-    void paint_words(QPainter& painter) const { words().paint(painter, *canvas); }
-    const SceneEdge* edge_at(const QPointF& at) const;
-    const SceneSpot* spot_at(const std::vector<SceneSpot>& among, const QPointF& at) const;
-    void changed() {
-        if (canvas) canvas->request_render();
-    }
-};
-
-// The nearest on the screen.
 const SceneSpot* SceneView::Impl::spot_at(const std::vector<SceneSpot>& among, const QPointF& at) const {
     const SceneSpot* nearest = nullptr;
     double best = 18;  // px: a gloved click
@@ -261,75 +162,48 @@ void SceneView::Impl::redraw_all() {
         redraw(layer);
 }
 
-SceneLabels SceneView::Impl::words() const {
-    SceneLabels words;
-    const QPalette palette = view.palette();
-    if (shown.at(Layer::labels)) {
+void SceneView::Impl::connect_canvas() {
+    canvas->on_paint = [this](QPainter& painter) { paint_words(painter); };
+    canvas->on_hover = [this](const QPointF& at) {
+        if (edges.empty()) return;
+        if (!canvas->lasso)
+            spot_at(proposed, at) ? canvas->setCursor(Qt::OpenHandCursor) : canvas->unsetCursor();
+        const SceneEdge* edge = edge_at(at);
+        const std::string id = edge ? edge->id : std::string();
+        if (id == lit_edge) return;
+        lit_edge = id;
+        redraw(Layer::edges);
+    };
+    canvas->on_click = [this](const QPointF& at) {
+        if (const SceneEdge* edge = edge_at(at))
+            return emit view.edge_picked(QString::fromStdString(edge->id));
+        const SceneSpot* nearest = spot_at(spots, at);
+        if (!nearest && view.layer(Layer::part))
+            if (const auto hit = canvas->pick(at, manager(Layer::part)->actor()))
+                emit view.part_picked(hit->x(), hit->y(), hit->z());
+        const std::string id = nearest ? nearest->id : std::string();
+        if (id != spot) view.select_spot(id);
+        emit view.spot_picked(QString::fromStdString(id));
+    };
+    canvas->on_grab = [this](const QPointF& at) {
+        const SceneSpot* ghost = shown.at(Layer::edges) ? spot_at(proposed, at) : nullptr;
+        held = ghost ? ghost->id : std::string();
+        return ghost != nullptr;
+    };
+    canvas->on_drag = [this](const QPointF& at) {
+        emit view.proposed_dragged(QString::fromStdString(held), canvas->mapTo(&view, at));
+    };
+    canvas->on_encircled = [this](const QPolygonF& line) {
+        canvas->lasso = false;
+        canvas->unsetCursor();
+        QStringList ids;
         for (const SceneSpot& one : spots) {
-            const Eigen::Vector3d at = canvas->project(one.workobject_from_sensor * one.reference_mm);
-            if (at.z() > 1) continue;
-            QString text = QString::fromStdString(one.id);
-            if (!one.enabled) text = SceneView::tr("%1 (off)").arg(text);
-            if (one.shift_mm && shown.at(Layer::corrections))
-                text += SceneView::tr("  %1 mm").arg(one.shift_mm->norm(), 0, 'f', 2);
-            const bool chosen = one.id == spot;
-            words.labels.push_back(
-                {{at.x(), at.y()}, text, chosen ? style::selection(palette) : style::text(palette), chosen});
+            const Eigen::Vector3d p = canvas->project(one.workobject_from_sensor * one.reference_mm);
+            if (p.z() <= 1 && line.containsPoint({p.x(), p.y()}, Qt::OddEvenFill))
+                ids << QString::fromStdString(one.id);
         }
-        if (next_robot && shown.at(Layer::robot)) {
-            const Eigen::Vector3d at = canvas->project(next_robot->workobject_from_flange.translation());
-            if (at.z() <= 1)
-                words.labels.push_back(
-                    {{at.x(), at.y()}, SceneView::tr("next pose"), style::selection(palette), true});
-        }
-        for (const SceneEdge& edge : edges) {
-            const bool chosen = !chosen_edges.empty() && edge.id == chosen_edges.front();
-            if ((edge.id != lit_edge && !chosen) || edge.points_mm.empty() || !shown.at(Layer::edges))
-                continue;
-            const Eigen::Vector3d at = canvas->project(edge.points_mm[edge.points_mm.size() / 2]);
-            if (at.z() > 1) continue;
-            const QString text = QString::fromStdString(edge.id) + QChar(0x20) + edge.words;
-            words.labels.push_back({{at.x(), at.y()}, text, style::selection(palette), edge.id == lit_edge});
-        }
-        for (const SceneSpot& one : proposed) {
-            const Eigen::Vector3d at = canvas->project(one.workobject_from_sensor * one.reference_mm);
-            if (at.z() <= 1 && shown.at(Layer::edges))
-                words.labels.push_back(
-                    {{at.x(), at.y()}, QString::fromStdString(one.id), style::selection(palette), false});
-        }
-        for (std::size_t i = 0; i < picks.size(); ++i) {
-            const Eigen::Vector3d at = canvas->project(picks[i]);
-            if (at.z() <= 1)
-                words.labels.push_back(
-                    {{at.x(), at.y()}, QString::number(i + 1), style::selection(palette), true});
-        }
-        if (const auto worst = worst_of(path); worst && shown.at(Layer::path)) {
-            const Eigen::Vector3d at = canvas->project(drawn_path(path, scale)[worst->point]);
-            QString text = SceneView::tr("moved %1 mm").arg(worst->shift_mm, 0, 'f', 2);
-            if (worst->sigma_mm > 0)
-                text += SceneView::tr(", 3 sigma %1 mm").arg(3 * worst->sigma_mm, 0, 'f', 3);
-            if (at.z() <= 1)
-                words.labels.push_back({{at.x(), at.y()}, text, style::attention(palette), true});
-        }
-        if (shown.at(Layer::regions))
-            for (const SceneRegion& one : regions) {
-                const auto weak = weak_arrow(one, spots);
-                if (!weak || one.weak_text.empty()) continue;
-                const Eigen::Vector3d at = canvas->project(weak->tip);
-                if (at.z() <= 1)
-                    words.labels.push_back({{at.x(), at.y()},
-                                            QString::fromStdString(one.id + ": " + one.weak_text),
-                                            style::alarm(palette),
-                                            false});
-            }
-    }
-    const bool any =
-        std::any_of(spots.begin(), spots.end(), [](const SceneSpot& s) { return s.shift_mm.has_value(); });
-    if ((any && shown.at(Layer::corrections)) || (!path.after_mm.empty() && shown.at(Layer::path)))
-        words.foot = SceneView::tr("corrections drawn × %1").arg(scale, 0, 'g', 3);
-    else if (mesh.triangles.empty() && spots.empty())
-        words.foot = SceneView::tr("No part yet: step 1, Cell, imports its mesh.");
-    return words;
+        emit view.spots_encircled(ids);
+    };
 }
 
 SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<Impl>(*this)) {
@@ -378,50 +252,7 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
         column->addWidget(impl_->canvas, 1);
         setFocusProxy(impl_->canvas);
         impl_->make_layers();
-        impl_->canvas->on_paint = [this](QPainter& painter) { impl_->paint_words(painter); };
-        impl_->canvas->on_hover = [this](const QPointF& at) {
-            if (impl_->edges.empty()) return;
-            if (!impl_->canvas->lasso)
-                impl_->spot_at(impl_->proposed, at) ? impl_->canvas->setCursor(Qt::OpenHandCursor)
-                                                    : impl_->canvas->unsetCursor();
-            const SceneEdge* edge = impl_->edge_at(at);
-            const std::string id = edge ? edge->id : std::string();
-            if (id == impl_->lit_edge) return;
-            impl_->lit_edge = id;
-            impl_->redraw(Layer::edges);
-        };
-        impl_->canvas->on_click = [this](const QPointF& at) {
-            if (const SceneEdge* edge = impl_->edge_at(at))
-                return emit edge_picked(QString::fromStdString(edge->id));
-            const SceneSpot* nearest = impl_->spot_at(impl_->spots, at);
-            if (!nearest && layer(Layer::part))
-                if (const auto hit = impl_->canvas->pick(at, impl_->manager(Layer::part)->actor()))
-                    emit part_picked(hit->x(), hit->y(), hit->z());
-            const std::string id = nearest ? nearest->id : std::string();
-            if (id != impl_->spot) select_spot(id);
-            emit spot_picked(QString::fromStdString(id));
-        };
-        impl_->canvas->on_grab = [this](const QPointF& at) {
-            const SceneSpot* ghost =
-                impl_->shown.at(Layer::edges) ? impl_->spot_at(impl_->proposed, at) : nullptr;
-            impl_->held = ghost ? ghost->id : std::string();
-            return ghost != nullptr;
-        };
-        impl_->canvas->on_drag = [this](const QPointF& at) {
-            emit proposed_dragged(QString::fromStdString(impl_->held), impl_->canvas->mapTo(this, at));
-        };
-        impl_->canvas->on_encircled = [this](const QPolygonF& line) {
-            impl_->canvas->lasso = false;
-            impl_->canvas->unsetCursor();
-            QStringList ids;
-            for (const SceneSpot& spot : impl_->spots) {
-                const Eigen::Vector3d p =
-                    impl_->canvas->project(spot.workobject_from_sensor * spot.reference_mm);
-                if (p.z() <= 1 && line.containsPoint({p.x(), p.y()}, Qt::OddEvenFill))
-                    ids << QString::fromStdString(spot.id);
-            }
-            emit spots_encircled(ids);
-        };
+        impl_->connect_canvas();
         show_view(View::iso);
     } else {
         impl_->sentence = new QLabel(

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "devices/controllers/abb/rapid_values.h"
+
 namespace seamwright::rapid {
 namespace {
 

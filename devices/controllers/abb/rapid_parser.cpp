@@ -1,135 +1,20 @@
-// Text of a module to its tree: the grammar of RAPID, with its reserved words and limits.
+// Text of a module to its tree: the grammar of RAPID, with its limits.
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <set>
 
 #include "devices/controllers/abb/rapid_language.h"
+#include "devices/controllers/abb/rapid_lexer.h"
 
 namespace seamwright::rapid {
 namespace {
 
-bool letter(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-}
-bool digit(char c) {
-    return c >= '0' && c <= '9';
-}
-
-struct Token {
-    enum class Kind { word, number, text, sign, end };
-    Kind kind = Kind::end;
-    std::string text;  // a word folded, a sign as it is
-    std::string shown;
-    double number = 0;
-    int line = 1;
-};
-
-class Lexer {
-  public:
-    Lexer(const std::string& text, std::string file) : text_(text), file_(std::move(file)) {}
-    std::vector<Token> all() {
-        std::vector<Token> tokens;
-        do tokens.push_back(next());
-        while (tokens.back().kind != Token::Kind::end);
-        return tokens;
-    }
-
-  private:
-    [[noreturn]] void refuse(const std::string& why) const { throw LoadError({file_, line_}, why); }
-    char peek(std::size_t ahead = 0) const { return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0'; }
-
-    Token next() {
-        for (;;) {
-            const char c = peek();
-            if (c == '\n') ++line_;
-            if (c == '!')
-                while (at_ < text_.size() && peek() != '\n') ++at_;
-            else if (c == ' ' || c == '\t' || c == '\r' || c == '\n')
-                ++at_;
-            else
-                break;
-        }
-        Token token;
-        token.line = line_;
-        if (at_ >= text_.size()) return token;
-        const char c = peek();
-        if (letter(c)) return word(std::move(token));
-        if (digit(c) || (c == '.' && digit(peek(1)))) return number(std::move(token));
-        if (c == '"') return quoted(std::move(token));
-        token.kind = Token::Kind::sign;
-        for (const char* two : {":=", "<>", "<=", ">="})
-            if (c == two[0] && peek(1) == two[1]) token.text = two;
-        if (token.text.empty()) {
-            if (std::string_view("=<>+-*/()[]{},;\\.|:").find(c) == std::string_view::npos)
-                refuse(fmt::format("the sign '{}' is not known", c));
-            token.text = c;
-        }
-        at_ += token.text.size();
-        return token;
-    }
-    Token word(Token token) {
-        const std::size_t from = at_;
-        while (letter(peek()) || digit(peek()) || peek() == '_') ++at_;
-        token.kind = Token::Kind::word;
-        token.shown = text_.substr(from, at_ - from);
-        if (token.shown.size() > kLongestIdentifier)
-            refuse(fmt::format("the name {} has more than {} characters", token.shown, kLongestIdentifier));
-        token.text = folded(token.shown);
-        return token;
-    }
-    Token number(Token token) {
-        token.kind = Token::Kind::number;
-        const char* end = text_.data() + text_.size();
-        const auto read = std::from_chars(text_.data() + at_, end, token.number);
-        if (read.ec != std::errc()) refuse("this is no number");
-        token.text.assign(text_.data() + at_, read.ptr);
-        at_ = static_cast<std::size_t>(read.ptr - text_.data());
-        if (letter(peek())) refuse("a name cannot begin with a digit");
-        return token;
-    }
-    Token quoted(Token token) {
-        token.kind = Token::Kind::text;
-        for (++at_;; ++at_) {
-            const char c = peek();
-            if (c == '\0' || c == '\n') refuse("the string is not closed in its line");
-            if (c == '"' && peek(1) != '"') break;
-            if (c == '"') ++at_;
-            if (c != '\\') {
-                token.text += c;
-                continue;
-            }
-            if (peek(1) == '\\') {
-                ++at_;
-                token.text += '\\';
-                continue;
-            }
-            int code = 0;
-            const char* from = text_.data() + at_ + 1;
-            if (at_ + 3 > text_.size() || std::from_chars(from, from + 2, code, 16).ptr != from + 2)
-                refuse("a \\ in a string wants two hexadecimal digits or another \\");
-            token.text += static_cast<char>(code);
-            at_ += 2;
-        }
-        ++at_;
-        if (token.text.size() > kLongestString)
-            refuse(
-                fmt::format("a string holds {} characters, this has {}", kLongestString, token.text.size()));
-        return token;
-    }
-
-    const std::string& text_;
-    const std::string file_;
-    std::size_t at_ = 0;
-    int line_ = 1;
-};
-
 class Parser {
   public:
     Parser(const std::string& text, std::string file, bool system)
-        : file_(std::move(file)), system_(system), tokens_(Lexer(text, file_).all()) {}
+        : file_(std::move(file)), system_(system), tokens_(tokens_of(text, file_)) {}
 
     std::unique_ptr<Module> module() {
         auto m = std::make_unique<Module>();
@@ -340,65 +225,19 @@ class Parser {
         if (is("var") || is("const") || is("pers"))
             refuse("a routine's data are declared before its instructions");
         if (take("if")) {
-            s->kind = Kind::branch;
-            auto condition = expression();
-            if (!take("then")) {  // one simple instruction
-                Block one;
-                if (is("if") || is("while") || is("for") || is("test")) refuse("THEN is missing");
-                one.push_back(statement());
-                s->branches.emplace_back(std::move(condition), std::move(one));
-                return s;
-            }
-            s->branches.emplace_back(std::move(condition), block());
-            while (take("elseif")) {
-                auto other = expression();
-                need("then");
-                s->branches.emplace_back(std::move(other), block());
-            }
-            if ((s->has_otherwise = take("else"))) s->otherwise = block();
-            need("endif");
-            take(";");
+            branch(*s);
             return s;
         }
         if (take("while")) {
-            s->kind = Kind::loop_while;
-            auto condition = expression();
-            need("do");
-            s->branches.emplace_back(std::move(condition), block());
-            need("endwhile");
-            take(";");
+            loop_while(*s);
             return s;
         }
         if (take("for")) {
-            s->kind = Kind::loop_for;
-            s->name = name("of the loop's variable").first;
-            need("from");
-            s->value = expression();
-            need("to");
-            s->until = expression();
-            if (take("step")) s->step = expression();
-            need("do");
-            s->otherwise = block();
-            need("endfor");
-            take(";");
+            loop_for(*s);
             return s;
         }
         if (take("test")) {
-            s->kind = Kind::test;
-            s->value = expression();
-            while (take("case")) {
-                std::vector<ExprPtr> values;
-                do values.push_back(expression());
-                while (take(","));
-                need(":");
-                s->cases.emplace_back(std::move(values), block());
-            }
-            if ((s->has_otherwise = take("default"))) {
-                need(":");
-                s->otherwise = block();
-            }
-            need("endtest");
-            take(";");
+            test(*s);
             return s;
         }
         if (take("return")) {
@@ -435,6 +274,68 @@ class Parser {
         }
         need(";");
         return s;
+    }
+
+    void branch(Statement& s) {
+        s.kind = Statement::Kind::branch;
+        auto condition = expression();
+        if (!take("then")) {  // one simple instruction
+            Block one;
+            if (is("if") || is("while") || is("for") || is("test")) refuse("THEN is missing");
+            one.push_back(statement());
+            s.branches.emplace_back(std::move(condition), std::move(one));
+            return;
+        }
+        s.branches.emplace_back(std::move(condition), block());
+        while (take("elseif")) {
+            auto other = expression();
+            need("then");
+            s.branches.emplace_back(std::move(other), block());
+        }
+        if ((s.has_otherwise = take("else"))) s.otherwise = block();
+        need("endif");
+        take(";");
+    }
+
+    void loop_while(Statement& s) {
+        s.kind = Statement::Kind::loop_while;
+        auto condition = expression();
+        need("do");
+        s.branches.emplace_back(std::move(condition), block());
+        need("endwhile");
+        take(";");
+    }
+
+    void loop_for(Statement& s) {
+        s.kind = Statement::Kind::loop_for;
+        s.name = name("of the loop's variable").first;
+        need("from");
+        s.value = expression();
+        need("to");
+        s.until = expression();
+        if (take("step")) s.step = expression();
+        need("do");
+        s.otherwise = block();
+        need("endfor");
+        take(";");
+    }
+
+    void test(Statement& s) {
+        s.kind = Statement::Kind::test;
+        s.value = expression();
+        while (take("case")) {
+            std::vector<ExprPtr> values;
+            do values.push_back(expression());
+            while (take(","));
+            need(":");
+            s.cases.emplace_back(std::move(values), block());
+        }
+        if ((s.has_otherwise = take("default"))) {
+            need(":");
+            s.otherwise = block();
+        }
+        need("endtest");
+        take(";");
     }
 
     // Up to `end`, which stays.
@@ -591,25 +492,6 @@ class Parser {
 };
 
 }  // namespace
-
-std::string folded(std::string name) {
-    for (char& c : name)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return name;
-}
-
-bool is_reserved_word(const std::string& name) {
-    static const std::set<std::string> words = {
-        "alias",     "and",     "backward", "case",     "connect",   "const", "default",   "div",
-        "do",        "else",    "elseif",   "endfor",   "endfunc",   "endif", "endmodule", "endproc",
-        "endrecord", "endtest", "endtrap",  "endwhile", "error",     "exit",  "false",     "for",
-        "from",      "func",    "goto",     "if",       "inout",     "local", "mod",       "module",
-        "nostepin",  "not",     "noview",   "or",       "pers",      "proc",  "raise",     "readonly",
-        "record",    "retry",   "return",   "step",     "sysmodule", "task",  "test",      "then",
-        "to",        "trap",    "true",     "trynext",  "undo",      "var",   "viewonly",  "while",
-        "with",      "xor"};
-    return words.count(name) > 0;
-}
 
 std::unique_ptr<Module> parse_module(const std::string& text, const std::string& file, bool system) {
     return Parser(text, file, system).module();

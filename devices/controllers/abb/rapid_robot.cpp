@@ -8,6 +8,7 @@
 #include "core/geometry/notation.h"
 #include "devices/abb/rapid_message.h"
 #include "devices/controllers/abb/rapid_system.h"
+#include "devices/controllers/abb/rapid_values.h"
 
 namespace seamwright::rapid {
 namespace {

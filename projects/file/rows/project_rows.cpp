@@ -176,10 +176,7 @@ std::vector<T> one_or_none(const std::optional<T>& thing) {
     return thing ? std::vector<T>{*thing} : std::vector<T>{};
 }
 
-}  // namespace
-
-Expected<std::vector<RowChange>> save_rows_of(Database& db, const Project& project) {
-    std::vector<RowChange> changes;
+Expected<void> check_all_ids(Database& db, const Project& project) {
     for (const auto& sound :
          {check_ids(db, "sensors", ids_of(project.sensors), "sensor"),
           check_ids(db, "robots", ids_of(project.robots), "robot"),
@@ -194,7 +191,11 @@ Expected<std::vector<RowChange>> save_rows_of(Database& db, const Project& proje
           check_ids(db, "fixture", ids_of(one_or_none(project.fixture)), "fixture"),
           check_ids(db, "fleet", ids_of(one_or_none(project.fleet)), "fleet"), check_part_types(project)})
         if (!sound) return tl::unexpected(sound.error());
+    return {};
+}
 
+// Of each there is one row.
+Expected<void> save_project_and_part(Database& db, const Project& project, std::vector<RowChange>& changes) {
     const char* name_row = R"(
         INSERT INTO project (id, name, created_utc, checksum) VALUES (1, ?1, ?2, row_checksum(1, ?1, ?2))
         ON CONFLICT (id) DO UPDATE SET name = excluded.name, checksum = row_checksum(id, excluded.name, created_utc)
@@ -223,7 +224,10 @@ Expected<std::vector<RowChange>> save_rows_of(Database& db, const Project& proje
     part.bind(1, part_text);
     part.bind(2, std::span<const std::byte>(project.part.mesh_ply));
     SEAM_OK(noting(db, "part", "1", changes, [&] { return part.run(); }));
+    return {};
+}
 
+Expected<void> save_devices(Database& db, const Project& project, std::vector<RowChange>& changes) {
     const auto device = [](const char* kind) {
         return [kind](Statement& s, const auto& item) -> Expected<void> {
             SEAM_TRY(auto text, row_text(item, fmt::format("{} {}", kind, item.id), kRow));
@@ -234,46 +238,50 @@ Expected<std::vector<RowChange>> save_rows_of(Database& db, const Project& proje
     };
     SEAM_OK(save_rows(db, "sensors", {"driver", "body"}, project.sensors, changes, device("sensor")));
     SEAM_OK(save_rows(db, "robots", {"driver", "body"}, project.robots, changes, device("robot")));
-    auto calibrations =
-        save_rows(db, "calibrations", {"sensor_id", "robot_id", "created_utc", "verdict", "body"},
-                  project.calibrations, changes, [](Statement& s, const Calibration& c) -> Expected<void> {
-                      SEAM_TRY(auto text, row_text(c, "calibration " + c.id, kRow));
-                      s.bind(3, c.sensor_id);
-                      s.bind(4, c.robot_id);
-                      s.bind(5, c.created_utc);
-                      s.bind(6, std::string(name_of(c.verdict)));
-                      s.bind(7, text);
-                      return s.run();
-                  });
-    if (!calibrations) return tl::unexpected(calibrations.error());
-    auto spots =
-        save_rows(db, "spots", {"sensor_id", "robot_id", "body", "reference_profile", "template_profile"},
-                  project.spots, changes, [](Statement& s, const Spot& spot) -> Expected<void> {
-                      SEAM_TRY(auto text, row_text(spot, "spot " + spot.id, kRow));
-                      auto reference = pack_profile(spot.reference_profile);
-                      auto model = pack_profile(spot.feature.template_profile);
-                      for (const auto* blob : {&reference, &model})
-                          if (!*blob) {
-                              Error error = blob->error();
-                              error.where = "spot " + spot.id;
-                              return tl::unexpected(error);
-                          }
-                      s.bind(3, spot.sensor_id);
-                      s.bind(4, spot.robot_id);
-                      s.bind(5, text);
-                      s.bind(6, std::span<const std::byte>(*reference));
-                      s.bind(7, std::span<const std::byte>(*model));
-                      return s.run();
-                  });
-    if (!spots) return tl::unexpected(spots.error());
-    auto regions = save_rows(db, "regions", {"frame_name", "body"}, project.regions, changes,
-                             [](Statement& s, const Region& region) -> Expected<void> {
-                                 SEAM_TRY(auto text, row_text(region, "region " + region.id, kRow));
-                                 s.bind(3, region.frame_name);
-                                 s.bind(4, text);
-                                 return s.run();
-                             });
-    if (!regions) return tl::unexpected(regions.error());
+    SEAM_OK(save_rows(db, "calibrations", {"sensor_id", "robot_id", "created_utc", "verdict", "body"},
+                      project.calibrations, changes,
+                      [](Statement& s, const Calibration& c) -> Expected<void> {
+                          SEAM_TRY(auto text, row_text(c, "calibration " + c.id, kRow));
+                          s.bind(3, c.sensor_id);
+                          s.bind(4, c.robot_id);
+                          s.bind(5, c.created_utc);
+                          s.bind(6, std::string(name_of(c.verdict)));
+                          s.bind(7, text);
+                          return s.run();
+                      }));
+    return {};
+}
+
+Expected<void> save_spots(Database& db, const Project& project, std::vector<RowChange>& changes) {
+    SEAM_OK(save_rows(db, "spots", {"sensor_id", "robot_id", "body", "reference_profile", "template_profile"},
+                      project.spots, changes, [](Statement& s, const Spot& spot) -> Expected<void> {
+                          SEAM_TRY(auto text, row_text(spot, "spot " + spot.id, kRow));
+                          auto reference = pack_profile(spot.reference_profile);
+                          auto model = pack_profile(spot.feature.template_profile);
+                          for (const auto* blob : {&reference, &model})
+                              if (!*blob) {
+                                  Error error = blob->error();
+                                  error.where = "spot " + spot.id;
+                                  return tl::unexpected(error);
+                              }
+                          s.bind(3, spot.sensor_id);
+                          s.bind(4, spot.robot_id);
+                          s.bind(5, text);
+                          s.bind(6, std::span<const std::byte>(*reference));
+                          s.bind(7, std::span<const std::byte>(*model));
+                          return s.run();
+                      }));
+    return {};
+}
+
+Expected<void> save_regions(Database& db, const Project& project, std::vector<RowChange>& changes) {
+    SEAM_OK(save_rows(db, "regions", {"frame_name", "body"}, project.regions, changes,
+                      [](Statement& s, const Region& region) -> Expected<void> {
+                          SEAM_TRY(auto text, row_text(region, "region " + region.id, kRow));
+                          s.bind(3, region.frame_name);
+                          s.bind(4, text);
+                          return s.run();
+                      }));
     SEAM_OK(save_rows(db, "panel_jobs", {"frame_name", "body"}, project.panel_jobs, changes,
                       [](Statement& s, const PanelJob& job) -> Expected<void> {
                           SEAM_TRY(auto text, row_text(job, "panel job " + job.id, kPanelRow));
@@ -281,6 +289,11 @@ Expected<std::vector<RowChange>> save_rows_of(Database& db, const Project& proje
                           s.bind(4, text);
                           return s.run();
                       }));
+    return {};
+}
+
+// What stands around spots and regions: part types, the line, how parts bend, the drift watch, the fixture, the fleet.
+Expected<void> save_surroundings(Database& db, const Project& project, std::vector<RowChange>& changes) {
     SEAM_OK(save_rows(db, "part_types", {"body"}, project.part_types, changes,
                       [](Statement& s, const PartType& type) -> Expected<void> {
                           SEAM_TRY(auto text, row_text(type, "part type " + type.id, kRow));
@@ -321,6 +334,16 @@ Expected<std::vector<RowChange>> save_rows_of(Database& db, const Project& proje
                           s.bind(3, text);
                           return s.run();
                       }));
+    return {};
+}
+
+}  // namespace
+
+Expected<std::vector<RowChange>> save_rows_of(Database& db, const Project& project) {
+    SEAM_OK(check_all_ids(db, project));
+    std::vector<RowChange> changes;
+    for (const auto save : {save_project_and_part, save_devices, save_spots, save_regions, save_surroundings})
+        SEAM_OK(save(db, project, changes));
     return changes;
 }
 

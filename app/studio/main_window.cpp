@@ -1,17 +1,10 @@
 #include "app/studio/main_window.h"
 
 #include <QAction>
-#include <QCloseEvent>
-#include <QDateTime>
-#include <QFileDialog>
 #include <QFileInfo>
 #include <QFrame>
 #include <QHBoxLayout>
-#include <QInputDialog>
 #include <QMenuBar>
-#include <QMessageBox>
-#include <QMimeData>
-#include <QPointer>
 #include <QScreen>
 #include <QScrollArea>
 #include <QSettings>
@@ -23,12 +16,7 @@
 #include <cmath>
 
 #include "app/studio/event_list.h"
-#include "app/studio/reuse_dialogs.h"
-#include "app/studio/sign_in_dialog.h"
 #include "app/studio/studio.h"
-#include "devices/exchange/json_fields.h"
-#include "projects/hand_over/hand_over.h"
-#include "projects/reuse/exchange.h"
 #include "widgets/jog/jog_panel.h"
 #include "widgets/pages/accept/accept_page.h"
 #include "widgets/pages/align_page.h"
@@ -38,10 +26,8 @@
 #include "widgets/pages/regions_page.h"
 #include "widgets/pages/run_page.h"
 #include "widgets/pages/teach_page.h"
-#include "widgets/print/pdf.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
-#include "widgets/words.h"
 
 namespace seamwright {
 namespace {
@@ -55,8 +41,6 @@ constexpr int kLowerView_px = 160;     // of a view below it, at least
 constexpr int kReadablePlot_px = 300;  // in which an axis' label has room
 constexpr int kLayoutVersion = 2;
 constexpr int kDevices_ms = 250;
-constexpr std::chrono::milliseconds kRobotStale{3000};
-constexpr int kNextMargin_px = 64;  // icon and padding of the next-step button
 
 // A dock's head: name, full, float. A double click makes the dock full.
 class DockTitle : public QWidget {
@@ -299,26 +283,6 @@ void MainWindow::make_central() {
     setCentralWidget(central);
 }
 
-void MainWindow::make_status() {
-    const auto label = [this](const QString& name, const QString& tip) {
-        auto* l = new QLabel;
-        l->setObjectName(name);
-        l->setToolTip(tip);
-        l->setContentsMargins(8, 0, 8, 0);
-        return l;
-    };
-    sensors_ = label("status_sensors", tr("Sensors: state, rate, dropped frames"));
-    robots_ = label("status_robots", tr("Robots: mode and state"));
-    push_ = label("status_push", tr("The last push"));
-    events_ = label("status_events", tr("Alarms and refusals in the event log"));
-    saved_ = label("status_saved", tr("Whether edits are saved"));
-    person_ = label("status_person", tr("Who is signed in"));
-    for (QLabel* l : {sensors_, robots_, push_, events_}) statusBar()->addWidget(l);
-    statusBar()->addPermanentWidget(person_);
-    statusBar()->addPermanentWidget(saved_);
-    statusBar()->setSizeGripEnabled(false);
-}
-
 void MainWindow::show_step(Step step) {
     beginning_ = false;  // whoever has chosen a step stays there
     step_ = step;
@@ -400,238 +364,6 @@ bool MainWindow::focusNextPrevChild(bool next) {
     return false;
 }
 
-// Broken at blanks, so that a button shows all of it.
-static QString wrapped(const QString& text, const QFontMetrics& font, int width_px) {
-    QString out, line;
-    for (const QString& word : text.split(' ')) {
-        const QString longer = line.isEmpty() ? word : line + ' ' + word;
-        if (!line.isEmpty() && font.horizontalAdvance(longer) > width_px) {
-            out += line + '\n';
-            line = word;
-        } else {
-            line = longer;
-        }
-    }
-    return out + line;
-}
-
-void MainWindow::refresh_next() {
-    for (const StepState& s : desk_.steps())
-        if (s.status == StepStatus::next) {
-            const QString text = tr("Next: %1 - %2").arg(step_name(s.step), s.why);
-            next_->setText(wrapped(text, next_->fontMetrics(), next_->width() - kNextMargin_px));
-            next_->setMinimumHeight(std::max(style::kTargetPx, next_->sizeHint().height()));  // all its lines
-            next_->setAccessibleName(text);
-            next_->setToolTip(text);
-        }
-}
-
-// What is not renewed is not called ok: a sensor by the age of its newest frame, a robot by the age of what it
-// said last (a run asks it without telling here).
-void MainWindow::refresh_devices() {
-    QStringList sensors, robots;
-    const auto seconds = [](auto age) {
-        return static_cast<int>(std::chrono::duration_cast<std::chrono::seconds>(age).count());
-    };
-    for (const SensorState& s : desk_.station().sensors) {
-        const QString id = QString::fromStdString(s.id);
-        const auto old = desk_.live().age(s.id);
-        if (old && *old > kStale)
-            sensors << tr("sensor %1 no frame since %2 s").arg(id).arg(seconds(*old));
-        else if (!s.trouble.empty() || !old)
-            sensors << tr("sensor %1 no frame").arg(id);
-        else
-            sensors << tr("sensor %1 ok %2 /s, %3 dropped")
-                           .arg(id)
-                           .arg(std::lround(desk_.live().rate_hz(s.id)))
-                           .arg(s.counters.damaged + s.counters.underrun);
-    }
-    const auto asked = std::chrono::steady_clock::now() - desk_.station().asked;
-    const bool old = asked > kRobotStale && !desk_.worker().busy();
-    for (const RobotState& r : desk_.station().robots) {
-        const QString id = QString::fromStdString(r.id);
-        robots << (!r.trouble.empty() ? tr("robot %1 silent").arg(id)
-                   : old              ? tr("robot %1 no answer since %2 s").arg(id).arg(seconds(asked))
-                                      : tr("robot %1 %2 ok").arg(id, shown_word(to_string(r.mode))));
-    }
-    if (!desk_.station().connected) {
-        sensors = {tr("not connected")};
-        robots.clear();
-    }
-    sensors_->setText(sensors.join("   "));
-    robots_->setText(robots.join("   "));
-}
-
-void MainWindow::refresh_status() {
-    refresh_devices();
-    QString push;
-    if (const auto runs = desk_.runs())
-        for (auto it = runs->rbegin(); it != runs->rend() && push.isEmpty(); ++it)
-            if (it->push && it->status == RunStatus::ok)
-                push = tr("last push %1, run %2 verified")
-                           .arg(QDateTime::fromString(QString::fromStdString(it->finished_utc),
-                                                      Qt::ISODateWithMs)
-                                    .toLocalTime()
-                                    .toString("HH:mm"))
-                           .arg(it->number);
-    push_->setText(push.isEmpty() ? tr("nothing pushed") : push);
-}
-
-void MainWindow::tell(const QString& sentence) {
-    show_message(sentence, "alarm");
-}
-
-void MainWindow::tell_done(const QString& sentence) {
-    show_message(sentence, "plain");
-}
-
-void MainWindow::show_message(const QString& sentence, const char* tone) {
-    trouble_text_->setText(sentence);
-    trouble_->setProperty("tone", tone);
-    trouble_->style()->unpolish(trouble_);
-    trouble_->style()->polish(trouble_);
-    trouble_->show();
-}
-
-void MainWindow::ask_who() {
-    if (!desk_.asks_who())
-        return tell(tr("The project has no users: nobody is asked. \"seamwright user add\" adds one."));
-    if (findChild<SignInDialog*>()) return;
-    auto* dialog = new SignInDialog(desk_, this);
-    dialog->setAttribute(Qt::WA_DeleteOnClose);
-    dialog->open();
-}
-
-void MainWindow::refresh_person() {
-    const auto& person = desk_.person();
-    const bool asks = desk_.asks_who();
-    person_->setVisible(asks);
-    person_->setText(
-        person ? QStringLiteral("%1, %2").arg(QString::fromStdString(person->name), role_name(person->role))
-               : tr("nobody signed in"));
-    sign_in_->setEnabled(asks);
-    sign_out_->setEnabled(person.has_value());
-    if (person && sign_out_minutes() > 0)
-        idle_timer_.start(sign_out_minutes() * 60'000);
-    else
-        idle_timer_.stop();
-}
-
-int MainWindow::sign_out_minutes() const {
-    return studio_.settings().value("sign_out_minutes", 10).toInt();
-}
-
-void MainWindow::set_sign_out() {
-    bool given = false;
-    const int minutes = QInputDialog::getInt(this, tr("Sign out by itself"),
-                                             tr("Minutes without mouse and keyboard; 0: never"),
-                                             sign_out_minutes(), 0, 24 * 60, 1, &given);
-    if (!given) return;
-    studio_.settings().setValue("sign_out_minutes", minutes);
-    refresh_person();
-}
-
-bool MainWindow::eventFilter(QObject* object, QEvent* event) {
-    switch (event->type()) {
-        case QEvent::KeyPress:
-        case QEvent::MouseButtonPress:
-        case QEvent::MouseMove:
-        case QEvent::Wheel:
-            if (idle_timer_.isActive()) idle_timer_.start();
-            break;
-        default:
-            break;
-    }
-    return QMainWindow::eventFilter(object, event);
-}
-
-bool MainWindow::may_leave() {
-    if (!desk_.modified()) return true;
-    QMessageBox box(
-        QMessageBox::Question, tr("Unsaved edits"),
-        tr("%1 has unsaved edits.").arg(QFileInfo(QString::fromStdString(desk_.path().string())).fileName()),
-        QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, this);
-    box.setObjectName("unsaved_question");
-    const int answer = box.exec();
-    if (answer == QMessageBox::Save) return save();
-    return answer == QMessageBox::Discard;
-}
-
-bool MainWindow::save() {
-    if (auto saved = desk_.save(); !saved) {
-        tell(shown_error(tr("The project was not saved."), saved.error()));
-        return false;
-    }
-    return true;
-}
-
-void MainWindow::new_project() {
-    if (!may_leave()) return;
-    const QString file = QFileDialog::getSaveFileName(
-        this, tr("New project"), studio_.data_folder() + "/project.seam", tr("Seamwright projects (*.seam)"));
-    if (!file.isEmpty()) studio_.create(file.endsWith(".seam") ? file : file + ".seam");
-}
-
-void MainWindow::open_project() {
-    if (!may_leave()) return;
-    const QString file =
-        QFileDialog::getOpenFileName(this, tr("Open project"), {}, tr("Seamwright projects (*.seam)"));
-    if (!file.isEmpty()) studio_.open(file);
-}
-
-void MainWindow::save_as() {
-    const QString file =
-        QFileDialog::getSaveFileName(this, tr("Save as"), QString::fromStdString(desk_.path().string()),
-                                     tr("Seamwright projects (*.seam)"));
-    if (file.isEmpty()) return;
-    if (auto saved = desk_.save_as(file.toStdString()); !saved)
-        tell(shown_error(tr("The project was not saved."), saved.error()));
-}
-
-void MainWindow::export_project() {
-    const QString file =
-        QFileDialog::getSaveFileName(this, tr("Export project"), "project.json", tr("JSON (*.json)"));
-    if (file.isEmpty()) return;
-    if (auto written = write_text_file(file.toStdString(),
-                                       seamwright::export_project(desk_.project(), true).dump(2) + "\n");
-        !written)
-        tell(shown_error(tr("The file was not written."), written.error()));
-}
-
-void MainWindow::import_project() {
-    if (!may_leave()) return;
-    const QString from = QFileDialog::getOpenFileName(this, tr("Import project"), {}, tr("JSON (*.json)"));
-    if (from.isEmpty()) return;
-    const auto json = read_json_file(from.toStdString());
-    if (!json) return tell(shown_error(tr("Nothing was imported."), json.error()));
-    auto project = seamwright::import_project(*json, from.toStdString());
-    if (!project) return tell(shown_error(tr("Nothing was imported."), project.error()));
-    const QString file = QFileDialog::getSaveFileName(this, tr("Save the imported project as"), {},
-                                                      tr("Seamwright projects (*.seam)"));
-    if (file.isEmpty()) return;
-    if (auto made = desk_.create(file.toStdString(), *project); !made)
-        tell(shown_error(tr("The project was not made."), made.error()));
-}
-
-void MainWindow::make_report() {
-    if (!desk_.is_open()) return tell(tr("No project is open."));
-    const QFileInfo project(QString::fromStdString(desk_.path().string()));
-    const QString file = QFileDialog::getSaveFileName(
-        this, tr("Hand-over report"), project.path() + "/" + project.completeBaseName() + ".pdf",
-        tr("PDF (*.pdf);;HTML (*.html)"));
-    if (file.isEmpty()) return;
-    HandOverOptions options;
-    options.language = desk_.language();
-    auto page = hand_over_report(desk_.file(), desk_.project(), desk_.facts(), options);
-    if (!page) return tell(shown_error(tr("There is no report."), page.error()));
-    const auto written = file.endsWith(".html", Qt::CaseInsensitive)
-                             ? write_text_file(file.toStdString(), page->html())
-                             : write_pdf(*page, file.toStdString());
-    if (!written) return tell(shown_error(tr("The file was not written."), written.error()));
-    desk_.note(EventKind::note, "report", "hand-over report written to " + file.toStdString());
-    tell_done(tr("The report is in %1").arg(file));
-}
-
 void MainWindow::show_dialog(const QString& name, const std::function<QDialog*()>& make) {
     if (!desk_.is_open()) return tell(tr("No project is open."));
     auto* dialog = findChild<QDialog*>(name);
@@ -642,70 +374,6 @@ void MainWindow::show_dialog(const QString& name, const std::function<QDialog*()
     dialog->show();
     dialog->raise();
     dialog->activateWindow();
-}
-
-void MainWindow::mirror_project() {
-    if (!desk_.is_open()) return tell(tr("No project is open."));
-    if (!may_leave()) return;
-    MirrorDialog dialog(this);
-    if (dialog.exec() != QDialog::Accepted) return;
-    auto mirrored = mirrored_project(desk_.project(), dialog.plane());
-    if (!mirrored) return tell(shown_error(mirrored.error()));
-    const QFileInfo project(QString::fromStdString(desk_.path().string()));
-    QString file =
-        QFileDialog::getSaveFileName(this, tr("Save the mirrored project as"),
-                                     project.path() + "/" + project.completeBaseName() + "_mirrored.seam",
-                                     tr("Seamwright projects (*.seam)"));
-    if (file.isEmpty()) return;
-    if (!file.endsWith(".seam")) file += ".seam";
-    if (file == project.filePath()) return tell(tr("Choose another name: the original stays."));
-    mirrored->name = QFileInfo(file).completeBaseName().toStdString();
-    if (auto made = desk_.create(file.toStdString(), *mirrored); !made)
-        return tell(shown_error(tr("The project was not made."), made.error()));
-    tell_done(
-        tr("This is the mirrored clone. Drive its spots slowly once, and teach their references again."));
-}
-
-void MainWindow::reteach() {
-    if (!desk_.is_open()) return tell(tr("No project is open."));
-    ExchangeDialog dialog(desk_.project(), this);
-    if (dialog.exec() != QDialog::Accepted) return;
-    const auto moved = desk_.reteach(dialog.exchange());
-    if (!moved) return tell(shown_error(moved.error()));
-    show_step(Step::prove);
-    tell_done(tr("%1 spots were led along. Drive each slowly once, then repeat the zero shift.")
-                  .arg(moved->size()));
-}
-
-void MainWindow::closeEvent(QCloseEvent* event) {
-    if (!may_leave()) {
-        event->ignore();
-        return;
-    }
-    remember();
-    desk_.close();
-    event->accept();
-    QApplication::quit();
-}
-
-void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
-    for (const QUrl& url : event->mimeData()->urls()) {
-        const QString ending = QFileInfo(url.toLocalFile()).suffix().toLower();
-        if (QStringList{"seam", "stl", "ply", "obj"}.contains(ending)) event->acceptProposedAction();
-    }
-}
-
-void MainWindow::dropEvent(QDropEvent* event) {
-    for (const QUrl& url : event->mimeData()->urls()) {
-        const QString file = url.toLocalFile();
-        if (file.endsWith(".seam", Qt::CaseInsensitive)) {
-            if (may_leave()) studio_.open(file);
-            return;
-        }
-        desk_.import_part(file.toStdString(), "", [window = QPointer(this)](const Expected<void>& imported) {
-            if (window && !imported) window->tell(shown_error(tr("Nothing was imported."), imported.error()));
-        });
-    }
 }
 
 }  // namespace seamwright

@@ -256,6 +256,7 @@ void ContourSheets::gather(const Profile& profile, const FeatureWindow& window, 
     }
     pitch_ = contour_pitch(all_x_, all_z_, scratch_);
     noise_ = contour_noise_mm(all_x_, all_z_, scratch_);
+    point_noise_ = noise_;
     if (!marked)
         for (std::size_t i = 1; i < all_x_.size(); ++i) {
             const double dx = all_x_[i] - all_x_[i - 1], dz = all_z_[i] - all_z_[i - 1];

@@ -56,6 +56,7 @@ class ContourSheets {
     const std::vector<double>& z() const { return z_; }
     const std::vector<Sheet>& sheets() const { return sheets_; }
     double noise_mm() const { return noise_; }
+    double point_noise_mm() const { return point_noise_; }  // across the contour, without what its shape adds
 
   private:
     struct Side {
@@ -94,7 +95,7 @@ class ContourSheets {
     std::vector<double> x_, z_;
     std::vector<Sheet> sheets_;
     ContourPitch pitch_;
-    double noise_ = 0;
+    double noise_ = 0, point_noise_ = 0;
 };
 
 }  // namespace seamwright

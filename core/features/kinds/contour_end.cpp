@@ -14,7 +14,7 @@
 // in x, or comes to its vertical tangent, at most half of fit_length_mm.
 //
 // Its covariance, along the tangent at the point and across it. Noise model: independent, equal, across the
-// contour, its sigma from the fit's residuals.
+// contour, its sigma from the fit's residuals, and not below what the profile's noise beside them makes likely.
 //     across   v + (w b2 h^2)^2 + e^2,   v = v_line + min(T - 2, 1) (v_parabola - v_line), h = r - p / 2
 //     along    r^2 / 12 + (r - p)^2 / 4 + noise^2
 // (w b2 h^2)^2: beyond the last point the contour may bend on or go on straight. e, other shape than a
@@ -28,8 +28,8 @@
 //       the returns in between (only where the sensor gives intensities);
 // and longer by p for each of the lines beyond the end, up to six, whose return the filter rejected: they do
 // not say that the surface has ended; behind a line without return only where they stand within three p of
-// the contour's continuation. noise: a sensor's is in z and moves the last point along a sloping contour as
-// well.
+// the contour's continuation. noise: that in z moves the last point along a sloping contour as well, that in x
+// (second differences of x; none on an exact grid) along every one.
 //
 // What is systematic stays: where light grazes a rounded rim, returns stop before the silhouette, at the
 // teaching as at the measuring. On a fold of 1.15 mm radius that is 0.15 mm; it repeats within the
@@ -148,6 +148,7 @@ class ContourEnd final : public FeatureFinder {
         }
         EndCurve curve = straight(line);
         const bool rounded = fit_parabola(line, curve);
+        know_noise(curve);
         const double last_s = curve.along(point(0));
         const double pitch = pitch_at(curve, rounded ? curve.tangent(last_s) : curve.direction, rounded);
         const double forward = 0.5 * pitch * curve.tangent(last_s).dot(curve.direction);
@@ -155,12 +156,13 @@ class ContourEnd final : public FeatureFinder {
         const Eigen::Vector2d tangent = curve.tangent(s), normal(-tangent.y(), tangent.x());
         feature.point_mm = curve.centre + s * curve.direction + curve.height(s) * curve.normal();
 
-        // A sensor's noise is in z: on a slope it moves the last point along the contour as well.
+        // Noise in z moves the last point along a sloping contour as well, noise in x along every one.
         const Eigen::Vector2d chord = curve.direction;
         const double slope = chord.x() != 0 ? std::abs(chord.y() / chord.x()) : 1;
-        const double noise = rounded
-                                 ? curve.sigma_mm / std::max(std::abs(chord.x()), 0.5) * std::abs(tangent.y())
-                                 : curve.sigma_mm * std::min(slope, 1.0);
+        const double upright =
+            rounded ? curve.sigma_mm / std::max(std::abs(chord.x()), 0.5) * std::abs(tangent.y())
+                    : curve.sigma_mm * std::min(slope, 1.0);
+        const double noise = std::hypot(upright, sideways_noise() * tangent.x());
         const double reach = reach_beyond(profile, at_last, tangent, pitch, noise);
         // Continued to the end of the reach, the contour may bend on or go on straight.
         const double continued = std::max(reach - 0.5 * pitch, 0.5 * pitch);
@@ -350,6 +352,26 @@ class ContourEnd final : public FeatureFinder {
                                ? (advance - std::sqrt(std::max(root, 0.0))) / k
                                : in_x / std::max(advance, kEndSmallest_mm);
         return std::clamp(arc, pitch, std::max(pitch, kEndLongestPitch * fit_length_));
+    }
+
+    // Few points know their own noise badly, and rounded to a sensor's steps they may all lie on the curve: the profile's
+    // noise counts beside them as so many points would.
+    void know_noise(EndCurve& curve) const {
+        constexpr double kAsMany = 4;
+        const double own = std::max(curve.used - (curve.b[2] != 0 ? 3 : 2), 1);
+        const double pooled = std::sqrt((own * curve.sigma_mm * curve.sigma_mm +
+                                         kAsMany * sheets_.point_noise_mm() * sheets_.point_noise_mm()) /
+                                        (own + kAsMany));
+        curve.sigma_mm = std::max(curve.sigma_mm, pooled);
+        curve.widening = std::min(curve.widening, (own + kAsMany) / (own + kAsMany - 2));
+    }
+
+    // Noise of x, from second differences: 0 on an exact grid; the median passes over missing returns.
+    double sideways_noise() const {
+        scratch_.clear();
+        for (std::size_t i = 1; i + 1 < fit_x_.size(); ++i)
+            scratch_.push_back(std::abs(fit_x_[i - 1] - 2 * fit_x_[i] + fit_x_[i + 1]));
+        return scratch_.size() < kEndFewestRounded ? 0 : kMadToSigma * end_median(scratch_) / std::sqrt(6.0);
     }
 
     // How far the last points lie off the curve where their mean says that it is not by noise, else 0.

@@ -57,12 +57,14 @@ Expected<ContourMatcher> ContourMatcher::make(const Profile& contour, const Eige
     const auto& tz = impl->model.z();
     for (std::size_t e = 0; e < impl->model.edges().size(); ++e) {
         const auto& edge = impl->model.edges()[e];
-        if (!edge.wall || impl->sampled_wall(e)) continue;
+        if (!edge.wall) continue;
+        const int most = static_cast<int>(tx.size()) - 1;
         const bool rising = tz[edge.point + 1] > tz[edge.point];
-        const JumpEnd end =
-            jump_end(tx, tz, rising ? edge.point : edge.point + 1, rising ? edge.point + 1 : edge.point, 0,
-                     static_cast<int>(tx.size()) - 1, impl->model.sigma_mm());
-        if (end.is_edge) impl->jumps.push_back(end);
+        JumpEnd end = jump_end(tx, tz, rising ? edge.point : edge.point + 1,
+                               rising ? edge.point + 1 : edge.point, 0, most, impl->model.sigma_mm());
+        end.outline = outline_at(tx, tz, edge.point, 0, most, impl->model.sigma_mm());
+        if (impl->sampled_wall(e)) end.is_edge = false;
+        impl->jumps.push_back(end);
     }
     for (std::size_t i = 0; i + 1 < tx.size(); ++i)
         if (impl->model.pitch().is_gap(tx[i + 1] - tx[i], tz[i + 1] - tz[i]))

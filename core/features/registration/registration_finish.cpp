@@ -13,6 +13,7 @@ constexpr double kSeenOfWall = 0.5;  // of its height
 constexpr int kFewestOfSlope = 4;    // points
 constexpr double kMostBare = 0.2;    // of the partners
 constexpr double kInsideWall = 0.9;  // of half its height
+constexpr double kSameWay = 0.7;     // cosine between the directions of two ends
 constexpr double kSurelySeen = 0.1;  // of what is known of the best direction: more than waves can feign
 
 }  // namespace
@@ -77,7 +78,7 @@ void ContourMatcher::Impl::collect(const CentredPose& pose, double gate, int str
 // row about one of its ends is the sheet that begins there, whose end the line of sight decides: both would fix what
 // nothing fixes.
 void ContourMatcher::Impl::drop_sparse_walls() const {
-    if (jumps.empty()) return;
+    if (std::none_of(jumps.begin(), jumps.end(), [](const JumpEnd& j) { return j.tells(); })) return;
     wall_hits.assign(model.edges().size(), 0);
     wall_seen.assign(model.edges().size(),
                      {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
@@ -110,37 +111,67 @@ void ContourMatcher::Impl::drop_sparse_walls() const {
     });
 }
 
+std::optional<ContourMatcher::Impl::MetEnd> ContourMatcher::Impl::met_edge(const JumpEnd& t, const JumpEnd& s,
+                                                                           const CentredPose& pose) const {
+    const double ex = s.x - pose.dx, ez = s.z - pose.dz;
+    const double qx = pose.cosine * ex + pose.sine * ez - t.x, qz = -pose.sine * ex + pose.cosine * ez - t.z;
+    const double outwards =
+        (pose.cosine * s.tx + pose.sine * s.tz) * t.tx + (-pose.sine * s.tx + pose.cosine * s.tz) * t.tz;
+    if (outwards < kSameWay) return std::nullopt;
+    // Where z grows away from the sensor, the end is where its shadow falls, which a turn moves along it.
+    const double shadow = t.of_gap ? 0 : 0.5 * t.height * pose.sine;
+    return MetEnd{
+        qx * t.tx + qz * t.tz,
+        qz * t.tx - qx * t.tz,
+        2 * (s.pitch + t.pitch),
+        // Moving the template's point (x, z) by (vx, vz) and a turn w: residual falls by t . (v + w (-z, x)).
+        {-t.tx, -t.tz, -(-t.tx * t.z + t.tz * t.x)},
+        (s.pitch * s.pitch + t.pitch * t.pitch) / 12 + (s.open - t.open) * (s.open - t.open) / 4 +
+            shadow * shadow};
+}
+
+std::optional<ContourMatcher::Impl::MetEnd> ContourMatcher::Impl::met_outline(const SheetOutline& t,
+                                                                              const SheetOutline& s,
+                                                                              const CentredPose& pose) const {
+    using Nearer = SheetOutline::Nearer;
+    const Nearer nearer = t.nearer != Nearer::unknown ? t.nearer : s.nearer;
+    if (nearer == Nearer::unknown || (s.nearer != Nearer::unknown && s.nearer != nearer)) return std::nullopt;
+    if (s.upwards != t.upwards || pose.cosine < kSameWay) return std::nullopt;
+    const SheetOutline::Side &a = nearer == Nearer::upper ? t.upper : t.lower,
+                             &b = nearer == Nearer::upper ? s.upper : s.lower;
+    // Along the scene's x, seen from the template.
+    const double tx = pose.cosine, tz = -pose.sine;
+    const double ex = s.x - pose.dx, ez = b.z - pose.dz;
+    const double qx = pose.cosine * ex + pose.sine * ez - t.x, qz = -pose.sine * ex + pose.cosine * ez - a.z;
+    // The outline of a round surface goes over it as it turns; it lies below the last point by about a drop, and of a circle
+    // the drop squared is twice radius and pitch.
+    const double over = 0.5 * a.drop * a.drop / std::max(t.pitch, 1e-9) * (1 - pose.cosine),
+                 below = a.drop * pose.sine;
+    return MetEnd{qx * tx + qz * tz,
+                  qz * tx - qx * tz,
+                  2 * (s.open + t.open) + a.drop + b.drop,
+                  {-tx, -tz, -(-tx * a.z + tz * t.x)},
+                  (s.open * s.open + t.open * t.open) / 12 + over * over + below * below};
+}
+
 void ContourMatcher::Impl::collect_jumps(const CentredPose& pose, double gate) const {
     jump_matches.clear();
+    const double noise = scene.sigma_mm * scene.sigma_mm + model.sigma_mm() * model.sigma_mm();
     for (std::size_t number = 0; number < jumps.size(); ++number) {
         const JumpEnd& t = jumps[number];
         double best = std::numeric_limits<double>::infinity();
         JumpMatch match{};
         for (const JumpEnd& s : scene.jumps) {
             if (s.of_gap != t.of_gap || s.height < 0.5 * t.height || s.height > 2 * t.height) continue;
-            const double ex = s.x - pose.dx, ez = s.z - pose.dz;
-            const double qx = pose.cosine * ex + pose.sine * ez - t.x,
-                         qz = -pose.sine * ex + pose.cosine * ez - t.z;
-            const double outwards = (pose.cosine * s.tx + pose.sine * s.tz) * t.tx +
-                                    (-pose.sine * s.tx + pose.cosine * s.tz) * t.tz;
-            if (outwards < 0.7) continue;
-            const double outside = qx * t.tx + qz * t.tz, across = qz * t.tx - qx * t.tz;
-            if (std::abs(outside) > gate + 2 * (s.pitch + t.pitch) ||
-                std::abs(across) > gate + 0.5 * t.height)
+            auto met = t.of_gap ? std::nullopt : met_outline(t.outline, s.outline, pose);
+            if (!met && t.is_edge && s.is_edge) met = met_edge(t, s, pose);
+            if (!met || std::abs(met->outside) > gate + met->reach ||
+                std::abs(met->across) > gate + 0.5 * t.height)
                 continue;
-            const double d = std::hypot(outside, across);
+            const double d = std::hypot(met->outside, met->across);
             if (d >= best) continue;
             best = d;
-            match.jump = static_cast<int>(number);
-            // Moving the template's point (x, z) by (vx, vz) and a turn w: residual falls by t . (v + w (-z,
-            // x)).
-            match.row = {-t.tx, -t.tz, -(-t.tx * t.z + t.tz * t.x)};
-            match.residual = outside;
-            // Where z grows away from the sensor, the end is where its shadow falls, which a turn moves along it.
-            const double shadow = t.of_gap ? 0 : 0.5 * t.height * pose.sine;
-            match.variance = (s.pitch * s.pitch + t.pitch * t.pitch) / 12 +
-                             (s.open - t.open) * (s.open - t.open) / 4 + shadow * shadow +
-                             scene.sigma_mm * scene.sigma_mm + model.sigma_mm() * model.sigma_mm();
+            match = {static_cast<int>(number), met->row, met->outside, met->variance + noise};
         }
         if (best < std::numeric_limits<double>::infinity()) jump_matches.push_back(match);
     }

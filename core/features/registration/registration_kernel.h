@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/features/contour/contour_model.h"
@@ -149,6 +150,16 @@ struct ContourMatcher::Impl {
     void collect(const CentredPose& pose, double gate, int stride) const;
     void drop_sparse_walls() const;
     void collect_jumps(const CentredPose& pose, double gate) const;
+    // An end of the template and one of the scene at a pose: how far the scene's lies outwards of it and across that, up to
+    // which distance outwards the two may be one, and what their distance outwards tells, without the points' noise.
+    struct MetEnd {
+        double outside, across, reach;
+        Eigen::Vector3d row;
+        double variance;
+    };
+    std::optional<MetEnd> met_edge(const JumpEnd& t, const JumpEnd& s, const CentredPose& pose) const;
+    std::optional<MetEnd> met_outline(const SheetOutline& t, const SheetOutline& s,
+                                      const CentredPose& pose) const;
     // One step of the finish: what the points ask for and what the ends ask for.
     struct Linearised {
         Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero(), ends_hessian = Eigen::Matrix3d::Zero();

@@ -113,9 +113,10 @@ void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin, c
             !pitch.is_step(solid_x_, solid_z_, static_cast<std::size_t>(i), sigma_mm))
             continue;
         const bool rising = solid_z_[i + 1] > solid_z_[i];
-        const JumpEnd end =
+        JumpEnd end =
             jump_end(solid_x_, solid_z_, rising ? i : i + 1, rising ? i + 1 : i, 0, solid - 1, sigma_mm);
-        if (end.is_edge) jumps.push_back(end);
+        end.outline = outline_at(solid_x_, solid_z_, i, 0, solid - 1, sigma_mm);
+        jumps.push_back(end);
     }
 }
 

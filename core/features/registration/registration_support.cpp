@@ -45,7 +45,10 @@ void ContourMatcher::Impl::learn_directions() {
         all += 2 * edge.half * (row.across * row.across.transpose() - false_part(edge, 0, row.along));
     }
     // A jump is known to a pitch, a point across its line to sigma.
-    const auto jump_row = [](const JumpEnd& j) {
+    const auto jump_row = [](const JumpEnd& j) -> Eigen::Vector3d {
+        if (!j.tells()) return Eigen::Vector3d::Zero();
+        if (const SheetOutline& o = j.outline; o.nearer != SheetOutline::Nearer::unknown)
+            return {-1, 0, o.nearer == SheetOutline::Nearer::upper ? o.upper.z : o.lower.z};
         return Eigen::Vector3d(-j.tx, -j.tz, -(-j.tx * j.z + j.tz * j.x));
     };
     const double jump_worth = [&] {
@@ -171,7 +174,10 @@ ContourMatcher::Impl::Support ContourMatcher::Impl::support(const Finish& found,
         collect_jumps(result.pose, result.gate);
         for (const JumpMatch& j : jump_matches)
             for (int k = 0; k < 3; ++k) met[k] += bin_information[static_cast<std::size_t>(bins + j.jump)][k];
-        const double absent = kMissing * double(jumps.size() - jump_matches.size());
+        double absent = 0;
+        for (const JumpEnd& j : jumps) absent += j.tells() ? kMissing : 0;
+        for (const JumpMatch& j : jump_matches)
+            if (jumps[static_cast<std::size_t>(j.jump)].tells()) absent -= kMissing;
         result.cost += absent;
         result.missing += absent;
         for (const JumpMatch& j : jump_matches)

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -89,6 +90,47 @@ TEST(ContourEndLaws, AStraightEndIsAsSharpAsItsPoints) {
                 EXPECT_NEAR(h.nees, 1.15, 0.25) << pitch << " " << noise << " " << slope;
                 EXPECT_NEAR(h.covered, 0.95, 0.03) << pitch << " " << noise << " " << slope;
             }
+}
+
+// Where x is measured as z is, the last point lies as unsurely along the contour as across it.
+TEST(ContourEndLaws, NoiseInXMakesAnEndUnsure) {
+    for (const double noise : {0.02, 0.05, 0.1}) {
+        const Honesty h = honesty([&](Random& random, Vector2d& end) {
+            Shape s;
+            s.line_to(6, 0.2);
+            s.line_to(10, 0.2 + 4 * 0.2);
+            end = {10, 0.2 + 4 * 0.2};
+            Profile p = sample(s, 0.15, phase(random));
+            add_noise(p, noise, random);
+            std::normal_distribution<double> normal;
+            for (double& x : p.x_mm) x += noise * normal(random);
+            return p;
+        });
+        EXPECT_NEAR(h.covered, 0.95, 0.03) << noise;
+    }
+}
+
+// A sheet of seven points in a sensor's coarse steps: those before its end may all lie on one line, and yet they are not
+// known without an error.
+TEST(ContourEndLaws, FewPointsInCoarseStepsAreNotExact) {
+    const double step = 0.05;
+    double least = 1;
+    const Honesty h = honesty(
+        [&](Random& random, Vector2d& end) {
+            Shape s;
+            s.line_to(0, 0);
+            s.line_to(20, 0);
+            end = {20, 0};
+            Profile p = sample(s, 0.3, phase(random));
+            add_noise(p, 0.5 * step, random);
+            for (double& z : p.z_mm) z = step * std::round(z / step);
+            const Feature f = right_end()->find(p);
+            least = std::min(least, f.covariance_mm2.eigenvalues().real().minCoeff());
+            return p;
+        },
+        500);
+    EXPECT_GT(least, 0.01 * step * step);
+    EXPECT_GE(h.covered, 0.92);
 }
 
 TEST(ContourEndLaws, ARoundedEndIsAsUnsureAsItSays) {

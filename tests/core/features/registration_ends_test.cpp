@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/features/registration/sheet_ends.h"
 #include "core/profile/filter.h"
 #include "joints.h"
 
@@ -63,6 +64,54 @@ TEST(RegistrationEnds, AHiddenFlankHoldsNothingAndIsNotMissed) {
     ASSERT_EQ(count.scenes, 80);
     EXPECT_EQ(count.wrong, 0);
     EXPECT_GE(count.ok, 0.85 * count.scenes);
+}
+
+// A hem of a few points' bend: its slopes tell little, the place where it hides the sheet below tells all, whichever way z
+// grows.
+TEST(RegistrationEnds, AHemOfFewPointsIsHeldByItsOutline) {
+    Dice dice(503);
+    Count count;
+    while (count.scenes < 200) {
+        const Joint joint = hem_joint(dice);
+        SensorModel sensor = SensorModel::any(dice);
+        sensor.points = 640;
+        sensor.pitch = dice.uniform(0.15, 0.3);
+        sensor.noise = dice.uniform(0.02, 0.06);
+        sensor.quantum = std::min(sensor.quantum, sensor.noise);
+        const MatchScene t = match_scene(joint, sensor, 0, 0.98, dice);
+        if (t.determined() && std::abs(t.truth.phi_rad) > 0.05) count.add(t);
+    }
+    EXPECT_EQ(count.wrong, 0);
+    EXPECT_GE(count.ok, 0.96 * count.scenes);
+}
+
+// Which surface hides the other is seen where one of them bends away.
+TEST(RegistrationEnds, TheNearerSurfaceIsTheOneThatBendsAway) {
+    using Nearer = SheetOutline::Nearer;
+    Dice dice(504);
+    const auto nearer = [&](double radius_left, double radius_right, bool down) {
+        const double pitch = 0.1, noise = 0.005;
+        std::vector<double> x, z;
+        for (int i = -40; i < 40; ++i) {
+            const double at = pitch * (i + 0.5), r = at < 0 ? radius_left : radius_right;
+            // Before the step the upper surface bends down; behind it the lower one bends up.
+            const double in = std::max(0., r - std::abs(at)),
+                         bow = r - std::sqrt(std::max(0., r * r - in * in));
+            x.push_back(at);
+            z.push_back(((at < 0 ? -bow : bow - 5) + noise * dice.normal()) * (down ? -1 : 1));
+        }
+        return outline_at(x, z, 39, 0, 79, noise);
+    };
+    for (int i = 0; i < 100; ++i) {
+        const double r = dice.uniform(0.7, 2);
+        EXPECT_EQ(nearer(r, 0, false).nearer, Nearer::upper);
+        EXPECT_EQ(nearer(r, 0, true).nearer, Nearer::lower);
+        EXPECT_EQ(nearer(0, r, false).nearer, Nearer::lower);
+        EXPECT_EQ(nearer(r, r, false).nearer, Nearer::unknown);
+        EXPECT_EQ(nearer(0, 0, false).nearer, Nearer::unknown);
+        EXPECT_NEAR(nearer(r, 0, false).x, 0, 1e-9);
+        EXPECT_EQ(nearer(r, 0, false).upwards, -1);
+    }
 }
 
 }  // namespace

@@ -6,14 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "core/value_type.h"
-
 namespace seamwright {
 
 // A place at which the part is held, and the directions in which it is held there: a locator one, a pin across its axis
 // two, a hinge that carries three.
 struct FixtureElement {
-    SEAM_VALUE_TYPE(FixtureElement);
     std::string id;                                   // "locator 2"
     Eigen::Vector3d at_mm = Eigen::Vector3d::Zero();  // work object
     std::vector<Eigen::Vector3d> directions;  // unit, work object, at right angles to each other; 1 to 3
@@ -21,7 +18,6 @@ struct FixtureElement {
 };
 
 struct Fixture {
-    SEAM_VALUE_TYPE(Fixture);
     std::string id = "fixture";
     std::vector<FixtureElement> elements;
     // ECMAScript, searched in a part's name; its first group is the carrier: "-C([0-9]+)$". Empty: the parts name no

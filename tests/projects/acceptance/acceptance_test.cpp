@@ -226,8 +226,11 @@ class Stored : public testing::Test {
     void SetUp() override {
         project.name = "door";
         project.part.name = "door left";
-        project.sensors.push_back(
-            {"A", "simulated", json::object(), {"simulated", "Seamwright", "S", "0001"}, {}, {}, "C"});
+        SensorSetup sensor;
+        sensor.id = "A", sensor.driver = "simulated",
+        sensor.identity = {"simulated", "Seamwright", "S", "0001"};
+        sensor.calibration_id = "C";
+        project.sensors.push_back(sensor);
         RobotSetup robot;
         robot.id = "R", robot.driver = "simulated", robot.identity = {"simulated", "KUKA", "KR", "0002"};
         project.robots.push_back(robot);

@@ -265,10 +265,11 @@ Text plate_hint(const CameraData& data, const std::vector<std::vector<char>>& us
     const auto fit = solve_plate_bundle(p, s);
     if (!fit.covariance.size() || fit.corner_cost > kShapeTells * solution.cost) return {};
     return Text(
-        "the plate is not as stated: stretched {:.2f} %, sheared {:.2f} %, bowed {:.2f} mm would halve the "
-        "residuals",
+        "the plate is not as stated: stretched {:.2f} %, sheared {:.2f} %, bowed {:.2f} mm would take {:.0f} "
+        "% of the "
+        "residuals away",
         100 * fit.state.shape.stretch, 100 * fit.state.shape.shear,
-        fit.state.shape.bow_mm.cwiseAbs().maxCoeff());
+        fit.state.shape.bow_mm.cwiseAbs().maxCoeff(), 100 * (1 - std::sqrt(fit.corner_cost / solution.cost)));
 }
 
 Judgement judge(const CameraResult& r, std::size_t views, const Text& hint) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <opencv2/calib3d.hpp>
 
@@ -88,6 +89,32 @@ TEST(CameraCalibration, NamesAWrongPoint) {
     EXPECT_FALSE(r->point_used[2][17]);
     EXPECT_THAT(r->report.poses[2].note, HasSubstr("17"));
     EXPECT_NEAR(r->camera.fx, 540, 2);
+}
+
+// A plate that is bowed by a millimetre and given as flat: named, with the share of the residuals that the bow explains.
+TEST(CameraCalibration, ABowedPlateIsNamedWithWhatItTakesAway) {
+    constexpr double kNoise_px = 0.1;
+    std::mt19937 random(7);
+    const auto camera = camera_640();
+    auto bowed = plate(9, 6, 25);
+    for (auto& p : bowed) p.z() = 1 - std::pow((p.x() - 100) / 100, 2);
+    CameraData data;
+    data.width = camera.width, data.height = camera.height;
+    for (int i = 0; i < 10; ++i) {
+        data.views.push_back(view_of(camera, bowed, random, 35, 420, kNoise_px, "v" + std::to_string(i)));
+        for (auto& p : data.views.back().object_mm) p.z() = 0;
+    }
+    const auto r = calibrate_camera(data, {});
+    ASSERT_TRUE(r);
+    const Text& reason = r->report.judgement.reason;
+    ASSERT_THAT(reason.english(), HasSubstr("the plate is not as stated"));
+    EXPECT_EQ(r->report.judgement.verdict, Verdict::usable);
+    ASSERT_EQ(reason.arguments().size(), 4u);
+    EXPECT_NEAR(std::get<double>(reason.arguments()[2]), 1, 0.15) << "bow, mm";
+    // What is left is the noise: of ten times 54 corners, less the parameters' share.
+    EXPECT_NEAR(std::get<double>(reason.arguments()[3]), 100 * (1 - kNoise_px * std::sqrt(2.0) / r->rms_px),
+                6)
+        << reason.english() << ", rms " << r->rms_px;
 }
 
 TEST(CameraCalibration, ParallelPlatesAreUndetermined) {

@@ -42,7 +42,9 @@ std::string chain_of(std::size_t count, std::string_view between) {
 
 SEAM_VALUE_TYPE_MEMBERS(Text)
 
-bool Text::operator==(const Text&) const = default;
+bool Text::operator==(const Text& other) const {
+    return key_ == other.key_ && arguments_ == other.arguments_;
+}
 
 Text::Text(Literal, std::string_view english) : key_(english) {}
 

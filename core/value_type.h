@@ -4,6 +4,7 @@
 //   struct Spot { SEAM_VALUE_TYPE(Spot); std::string id; ... };     spot.h
 //   SEAM_VALUE_TYPE_MEMBERS(Spot)                                    spot.cpp
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is the name of a type
 #define SEAM_VALUE_TYPE(T)      \
     T();                        \
     T(const T&);                \
@@ -19,3 +20,4 @@
     T& T::operator=(const T&) = default;     \
     T& T::operator=(T&&) noexcept = default; \
     T::~T() = default;
+// NOLINTEND(bugprone-macro-parentheses)

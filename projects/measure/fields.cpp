@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "core/features/kinds/feature_registry.h"
 #include "core/panel/double_head.h"
@@ -127,10 +128,10 @@ const std::vector<Field<PanelJob>>& panel_fields() {
 namespace {
 template <class E>
 E choice(double v) {
-    return static_cast<E>(static_cast<int>(v + 0.5));
+    return static_cast<E>(std::lround(v));
 }
 int whole(double v) {
-    return static_cast<int>(v + 0.5);
+    return static_cast<int>(std::lround(v));
 }
 }  // namespace
 

@@ -295,9 +295,9 @@ bool SceneView::has_part() const {
     return !impl_->mesh.triangles.empty();
 }
 
-void SceneView::Impl::take_part(SceneMesh part, vtkSmartPointer<vtkPolyData> drawn) {
+void SceneView::Impl::take_part(SceneMesh part, const vtkSmartPointer<vtkPolyData>& drawn) {
     mesh = std::move(part);
-    surface = std::move(drawn);
+    surface = drawn;
     redraw(Layer::part);
     if (first_fit && !mesh.points.empty()) {
         first_fit = false;

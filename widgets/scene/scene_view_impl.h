@@ -71,7 +71,7 @@ struct SceneView::Impl {
     void restyle();
     void redraw(Layer layer);
     void redraw_all();
-    void take_part(SceneMesh part, vtkSmartPointer<vtkPolyData> drawn);
+    void take_part(SceneMesh part, const vtkSmartPointer<vtkPolyData>& drawn);
     SceneLabels words() const;
     void paint_words(QPainter& painter) const { words().paint(painter, *canvas); }
     const SceneEdge* edge_at(const QPointF& at) const;

@@ -11,9 +11,11 @@
         static constexpr auto words = std::to_array<const char*>({__VA_ARGS__}); \
     }
 // Beside its description, for both archives.
+// NOLINTBEGIN(bugprone-macro-parentheses): T is the name of a type
 #define SEAMWRIGHT_DESCRIBED(T)              \
     template void describe(JsonWriter&, T&); \
     template void describe(JsonReader&, T&)
+// NOLINTEND(bugprone-macro-parentheses)
 
 namespace seamwright {
 

@@ -134,7 +134,8 @@ std::optional<ContourMatcher::Impl::MetEnd> ContourMatcher::Impl::met_outline(co
                                                                               const SheetOutline& s,
                                                                               const CentredPose& pose) const {
     using Nearer = SheetOutline::Nearer;
-    const Nearer nearer = t.nearer != Nearer::unknown ? t.nearer : s.nearer;
+    // As taught: what bends in the scene may be another surface, a reflection's.
+    const Nearer nearer = t.nearer;
     if (nearer == Nearer::unknown || (s.nearer != Nearer::unknown && s.nearer != nearer)) return std::nullopt;
     if (s.upwards != t.upwards || pose.cosine < kSameWay) return std::nullopt;
     const SheetOutline::Side &a = nearer == Nearer::upper ? t.upper : t.lower,

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cstring>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "core/profile/stripe/peaks.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/image_channel.h"
+#include "devices/exchange/image_codecs.h"
 
 #if defined(__SANITIZE_THREAD__)
 // GDAL, which OpenCV registers among its codecs, takes its own locks in both orders while it starts.
@@ -98,8 +98,8 @@ Expected<ChannelChoice> choose_channel(const std::filesystem::path& path, int bi
     SEAM_TRY(const auto bytes, read_text_file(path, std::size_t{1} << 30));
     int channels = 1;
     try {
-        const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
-        channels = cv::imdecode(raw, cv::IMREAD_UNCHANGED | cv::IMREAD_IGNORE_ORIENTATION).channels();
+        SEAM_TRY(const cv::Mat stored, decode_image(bytes));
+        channels = stored.channels();
     } catch (const std::exception&) {
         return file_error("is no readable image", path.string(), "give PNG, BMP, TIFF or PGM");
     }
@@ -156,8 +156,7 @@ Expected<void> read_image_file(const std::filesystem::path& path, Frame& frame, 
     }
     cv::Mat image;
     try {
-        const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
-        image = cv::imdecode(raw, cv::IMREAD_UNCHANGED | cv::IMREAD_IGNORE_ORIENTATION);
+        SEAM_TRY(image, decode_image(bytes));
         if (image.empty())
             return file_error("is no readable image", path.string(), "give PNG, BMP, TIFF or PGM");
         if (image.depth() != CV_8U && image.depth() != CV_16U) {
@@ -196,8 +195,8 @@ Expected<void> write_image_file(const std::filesystem::path& path, const StripeI
     try {
         const cv::Mat view(image.height, image.width, image.bit_depth > 8 ? CV_16U : CV_8U,
                            const_cast<std::byte*>(image.pixels), image.row_bytes);
-        std::vector<unsigned char> encoded;
-        if (!cv::imencode(path.extension().string(), view, encoded, {cv::IMWRITE_PNG_COMPRESSION, 1})) {
+        SEAM_TRY(const auto encoded, encode_image(path.extension(), view));
+        if (encoded.empty()) {
             return file_error("the image cannot be encoded", path.string(), "name it .png, .tiff or .pgm");
         }
         return write_text_file(path, {reinterpret_cast<const char*>(encoded.data()), encoded.size()});

@@ -1,0 +1,31 @@
+#pragma once
+// OpenCV's codecs for images. They pull a hundred and forty shared libraries along (GDAL's among them), a tenth of a second
+// of every start: they are read from disk with the first image.
+
+#include <filesystem>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+
+namespace seamwright {
+
+// What the bytes of an image file hold, channels and depth as stored, turned by no tag. Empty where they are no image. Throws
+// cv::Exception or std::bad_alloc where the header lies. Error (file): this installation is without its codecs.
+Expected<cv::Mat> decode_image(const std::string& bytes);
+
+// The bytes of an image file of the format that the extension (".png") names; none where there is no such format. Throws
+// cv::Exception. Error (file): this installation is without its codecs.
+Expected<std::vector<unsigned char>> encode_image(const std::filesystem::path& extension,
+                                                  const cv::Mat& image);
+
+// What the shared object seamwright_codecs.so, which stands beside the program, hands out by these two names.
+using DecodeImage = void (*)(const std::string& bytes, cv::Mat& image);
+using EncodeImage = bool (*)(const std::string& extension, const cv::Mat& image,
+                             std::vector<unsigned char>& bytes);
+inline constexpr const char* kCodecsFile = "seamwright_codecs.so";
+inline constexpr const char* kDecodeImage = "seamwright_decode_image";
+inline constexpr const char* kEncodeImage = "seamwright_encode_image";
+
+}  // namespace seamwright

@@ -29,7 +29,7 @@ class Demo : public testing::Test {
 
 TEST_F(Demo, TakesADisplacedDoorWithinATenthAndCanBeComputedAgain) {
     const std::string project = (folder / "out" / "demo.seam").string();
-    ProgramResult r =
+    const ProgramResult r =
         run_program({"demo", "--dir", (folder / "out").string(), "--parts", "3", "--json", "-"}, folder);
     ASSERT_EQ(r.exit_code, 0) << r.err;
     const json a = json::parse(r.out);
@@ -50,16 +50,6 @@ TEST_F(Demo, TakesADisplacedDoorWithinATenthAndCanBeComputedAgain) {
 
     EXPECT_EQ(run_program({"check", project}, folder).exit_code, 0);
     EXPECT_EQ(run_program({"replay", project, "--jobs", "2"}, folder).exit_code, 0);
-
-    // The cables change nothing: the same cell without them, within what the demo's own noise does.
-    r = run_program(
-        {"demo", "--dir", (folder / "direct").string(), "--parts", "3", "--in-process", "--json", "-"},
-        folder);
-    ASSERT_EQ(r.exit_code, 0) << r.err;
-    const json direct = json::parse(r.out)["path"].back();
-    EXPECT_NEAR(direct["after_three_sigma_mm"], all["after_three_sigma_mm"], 0.05);
-    EXPECT_NEAR(direct["after_mean_mm"], all["after_mean_mm"], 0.02);
-    EXPECT_NEAR(direct["before_max_mm"], all["before_max_mm"], 0.01) << "the same parts";
 }
 
 // A weak distortion, where a cost that is not the image's leads into the fold of the lens.

@@ -182,6 +182,10 @@ struct ContourMatcher::Impl {
     // `telling`: by how much the cost must exceed that of the likeliest place.
     Held held(const Finish& finish, const Support& here, double sigma, const Eigen::Vector3d& twist,
               double telling) const;
+    // Whether the scene goes on smoothly where the template has a step or a bend: a parabola explains the matched points
+    // better than the template does, whose own form stands out of its noise. What holds a place was then not seen there,
+    // however well flats lie on flats.
+    bool smooth_instead(const CentredPose& pose) const;
     Held held_by_ends(const Eigen::Vector3d& twist) const;
     void follow(Finish& finish, Support& support, double sigma) const;
     // By how much the cost of the second must exceed that of the first to be told from it.

@@ -185,6 +185,47 @@ ContourMatcher::Impl::Held ContourMatcher::Impl::held_by_ends(const Eigen::Vecto
     return place;
 }
 
+bool ContourMatcher::Impl::smooth_instead(const CentredPose& pose) const {
+    constexpr double kStandsOut = 5;  // twice the sigmas that tell the template from the parabola
+    const auto n = static_cast<Eigen::Index>(matches.size());
+    if (n < kFewestRegistrationPoints) return false;
+    Eigen::Matrix2Xd feet(2, n), points(2, n);
+    Eigen::VectorXd residuals(n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+        const Match& m = matches[static_cast<std::size_t>(k)];
+        const ContourModel::Edge& edge = model.edges()[m.foot.edge];
+        const auto at = static_cast<std::size_t>(m.scene);
+        const double ex = scene.x[at] - pose.dx, ez = scene.z[at] - pose.dz;
+        feet.col(k) << edge.cx + m.foot.u * edge.tx, edge.cz + m.foot.u * edge.tz;
+        points.col(k) << pose.cosine * ex + pose.sine * ez, -pose.sine * ex + pose.cosine * ez;
+        residuals[k] = m.foot.residual;
+    }
+    const Eigen::Vector2d middle = feet.rowwise().mean();
+    feet.colwise() -= middle;
+    points.colwise() -= middle;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(Eigen::Matrix2d(feet * feet.transpose()));
+    const double length = std::sqrt(eigen.eigenvalues()[1] / static_cast<double>(n));
+    if (!(length > 0)) return false;
+    // What a parabola along the template's longer axis leaves.
+    const auto left = [&](const Eigen::Matrix2Xd& p) -> Eigen::VectorXd {
+        const Eigen::ArrayXd t = p.transpose() * eigen.eigenvectors().col(1) / length;
+        const Eigen::VectorXd height = p.transpose() * eigen.eigenvectors().col(0);
+        Eigen::MatrixX3d a(n, 3);
+        a << Eigen::ArrayXd::Ones(n), t, t.square();
+        return height - a * (a.transpose() * a).ldlt().solve(a.transpose() * height);
+    };
+    const Eigen::VectorXd of_feet = left(feet), of_points = left(points);
+    // With r the residuals, d the template's form over its parabola and w the waves that its noise adds to d: the points
+    // leave (r + d)^2. Where the template is right, r is noise - w, else it is noise - d; the middle of the two is w^2.
+    const double windows = fit_variance * static_cast<double>(n),
+                 waves = windows * model.sigma_mm() * model.sigma_mm();
+    if (residuals.squaredNorm() - of_points.squaredNorm() <= waves) return false;
+    const double variance = of_points.squaredNorm() / static_cast<double>(n),
+                 form = of_feet.squaredNorm() - waves;
+    return form >
+           kStandsOut * std::sqrt((form + waves) * variance + 2 * waves * waves / std::max(windows, 1.0));
+}
+
 ContourMatcher::Impl::SceneSlope ContourMatcher::Impl::scene_slope(int at, int reach) const {
     constexpr double kNeighbours = 5;  // pitches
     const double near = kNeighbours * scene.pitch.distance;
@@ -353,6 +394,9 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
                      slopes = weak.seen / std::max(found.sigma * found.sigma, 1e-10);
         pose = moved_along(pose, weak.twist, ends.shift * told / (told + std::max(slopes, 0.0)));
     }
+    collect(pose, rating.gate, 1);  // where it was moved to
+    drop_sparse_walls();
+    const bool smooth = smooth_instead(pose);
     const Eigen::Vector2d turned = set_pose();
     const Eigen::Matrix2d r =
         (Eigen::Matrix2d() << pose.cosine, -pose.sine, pose.sine, pose.cosine).finished();
@@ -376,9 +420,9 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
     const double enough = std::max(kSmallestShare * (1 - away.share), kLeastOfAll);
     if (rating.share < enough || scatter || unmet > 1) {
         result.status = RegistrationStatus::no_match;
-    } else if (sliding || unmet > 0) {
+    } else if (sliding || smooth || unmet > 0) {
         result.status = RegistrationStatus::sliding;
-        const Eigen::Vector3d free = sliding ? weak.twist : directions[least].twist;
+        const Eigen::Vector3d free = sliding || smooth ? weak.twist : directions[least].twist;
         result.covariance +=
             kUndetermined_mm * kUndetermined_mm * (to_scene * free) * (to_scene * free).transpose();
         const Eigen::Vector2d q = reference - o;

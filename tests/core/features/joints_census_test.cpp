@@ -221,7 +221,7 @@ TEST(Joints, AGapBeyondTheWindowIsNotFoundInIt) {
         far += (r.scene_from_template * t.reference - t.truth * t.reference).norm() > 1;
     }
     std::printf("butt gap beyond the window: ok %d, of them a millimetre off %d, of %d\n", ok, far, trials);
-    EXPECT_LE(far, 0.01 * trials);
+    EXPECT_LE(far, 0.001 * trials);
 }
 
 }  // namespace

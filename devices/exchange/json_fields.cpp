@@ -131,7 +131,7 @@ Expected<void> only_fields(const nlohmann::json& json, std::initializer_list<std
 Expected<void> only_fields(const nlohmann::json& json, const std::vector<std::string_view>& known,
                            const std::string& where) {
     if (!json.is_object()) return input_error(Text("must be an object, not {}", type_name(json)), where);
-    if (known.size() == 0) return {};
+    if (known.empty()) return {};
     for (const auto& [key, value] : json.items()) {
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;
         std::string list;

@@ -394,8 +394,10 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
                      slopes = weak.seen / std::max(found.sigma * found.sigma, 1e-10);
         pose = moved_along(pose, weak.twist, ends.shift * told / (told + std::max(slopes, 0.0)));
     }
-    collect(pose, rating.gate, 1);  // where it was moved to
-    drop_sparse_walls();
+    if (open || thin || ends.held) {  // held() has looked elsewhere, or the pose was moved
+        collect(pose, rating.gate, 1);
+        drop_sparse_walls();
+    }
     const bool smooth = smooth_instead(pose);
     const Eigen::Vector2d turned = set_pose();
     const Eigen::Matrix2d r =

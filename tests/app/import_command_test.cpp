@@ -294,6 +294,20 @@ TEST_F(Import, OurOwnExportsComeBackInEveryForm) {
     }
 }
 
+// The program alone, without the object that stands beside it.
+TEST_F(Import, WithoutItsCodecsAnImageIsRefusedInOneSentence) {
+    const auto alone = folder / "alone" / "seamwright", images = folder / "images";
+    std::filesystem::create_directories(alone.parent_path());
+    std::filesystem::create_directories(images);
+    std::filesystem::copy_file(SEAMWRIGHT_PROGRAM, alone);
+    std::ofstream(images / "a.pgm") << "P5\n4 4\n255\n" << std::string(16, '7');
+    const std::vector<std::string> look = {"import", "--look", "--from", images.string()};
+    const ProgramResult r = run_program(look, folder, alone);
+    EXPECT_EQ(r.exit_code, 1);
+    EXPECT_THAT(r.out + r.err, HasSubstr("put seamwright_codecs.so beside the program"));
+    EXPECT_THAT(run_program(look, folder).out, Not(HasSubstr("codecs")));
+}
+
 TEST_F(Import, LookSaysWhatWasUnderstood) {
     record([](const auto& p) { return "X;Z\n" + rows_of(p, ";", 1e3, true); }, ".csv");
     const std::string car = (folder / "car").string();

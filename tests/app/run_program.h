@@ -32,8 +32,9 @@ inline std::filesystem::path test_folder(const std::string& name) {
 }
 
 inline ProgramResult run_program(const std::vector<std::string>& arguments,
-                                 const std::filesystem::path& folder) {
-    std::string command = "'" SEAMWRIGHT_PROGRAM "'";
+                                 const std::filesystem::path& folder,
+                                 const std::filesystem::path& program = SEAMWRIGHT_PROGRAM) {
+    std::string command = "'" + program.string() + "'";
     for (const std::string& a : arguments) {
         command += " '";
         for (char c : a) c == '\'' ? command += "'\\''" : command += c;

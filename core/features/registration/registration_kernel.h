@@ -184,7 +184,7 @@ struct ContourMatcher::Impl {
               double telling) const;
     // Whether the scene goes on smoothly where the template has a step or a bend: a parabola explains the matched points
     // better than the template does, whose own form stands out of its noise. What holds a place was then not seen there,
-    // however well flats lie on flats.
+    // however well flats lie on flats. Of `matches`, collected at `pose`.
     bool smooth_instead(const CentredPose& pose) const;
     Held held_by_ends(const Eigen::Vector3d& twist) const;
     void follow(Finish& finish, Support& support, double sigma) const;

@@ -33,22 +33,24 @@ struct WindowSums {
 
 }  // namespace
 
-double contour_noise_mm(std::span<const double> x, std::span<const double> z, std::vector<double>& scratch) {
+double contour_noise_mm(std::span<const double> x, std::span<const double> z, std::vector<double>& scratch,
+                        std::size_t apart) {
     // Where the noise is of the size of the pitch, the direction of a chord of four points is noise too: the
     // chord is then taken as long as twelve sigma.
     constexpr std::size_t kLongest = 96;
     const std::size_t n = x.size();
-    std::size_t reach = 2;
+    const std::size_t one = apart, two = 2 * apart;
+    std::size_t reach = two;
     double sigma = 0;
     for (int pass = 0; pass < 3; ++pass) {
         scratch.clear();
-        for (std::size_t i = 2; i + 2 < n; ++i) {
+        for (std::size_t i = two; i + two < n; ++i) {
             const std::size_t a = i > reach ? i - reach : 0, b = std::min(i + reach, n - 1);
             const double tx = x[b] - x[a], tz = z[b] - z[a];
             const double length = std::hypot(tx, tz);
             if (!(length > 0)) continue;
-            const double fx = x[i + 2] - 4 * x[i + 1] + 6 * x[i] - 4 * x[i - 1] + x[i - 2];
-            const double fz = z[i + 2] - 4 * z[i + 1] + 6 * z[i] - 4 * z[i - 1] + z[i - 2];
+            const double fx = x[i + two] - 4 * x[i + one] + 6 * x[i] - 4 * x[i - one] + x[i - two];
+            const double fz = z[i + two] - 4 * z[i + one] + 6 * z[i] - 4 * z[i - one] + z[i - two];
             scratch.push_back(std::abs(fz * tx - fx * tz) / length);
         }
         if (scratch.size() < 8) return sigma;

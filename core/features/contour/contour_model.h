@@ -24,8 +24,10 @@ namespace seamwright {
 
 // Noise of a single point across the contour, 1 sigma, from fourth differences (1, -4, 6, -4, 1) / sqrt(70)
 // projected on the local normal: shape up to the third order cancels; the median makes it blind to corners
-// and outliers. 0 when fewer than 8 differences exist. `x`, `z` finite, in contour order.
-double contour_noise_mm(std::span<const double> x, std::span<const double> z, std::vector<double>& scratch);
+// and outliers. 0 when fewer than 8 differences exist. `x`, `z` finite, in contour order. `apart`: of points so many
+// lines apart, which depend less on one another where an interpolation lies behind them.
+double contour_noise_mm(std::span<const double> x, std::span<const double> z, std::vector<double>& scratch,
+                        std::size_t apart = 1);
 
 // Gaps: where two neighbours are no neighbours on the surface.
 struct ContourPitch {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kHoleLines = 6;
 constexpr double kByChance = 1e-5;
-constexpr int kStepSide = 12, kStepShort = 6, kStepFewest = 4, kStepBetween = 1;
+constexpr int kStepSide = 12, kStepShort = 6, kStepFewest = 4, kStepBetween = 2;
 constexpr double kStepSigma = 6;
 constexpr double kWorthLooking = 0.3;  // of kStepSigma: lower jumps are none
 constexpr double kGoesOn = 5;          // sigma
@@ -18,12 +18,20 @@ constexpr double kCloseUp = 4;         // sigma
 constexpr double kRisen = 0.75;
 constexpr double kStepRms = 1.6;     // sigma: a side that is no line
 constexpr double kBentPitch = 0.02;  // of the pitch, that it is off beside its noise
-constexpr double kSteepWall = 2;     // slope: what stands between two sheets is no surface to follow
+// Slope, by the points in between: what stands between two sheets is no surface to follow.
+constexpr double kSteepWall[] = {0, 2, 2.5};
+constexpr double kUpperHalf = 0.55;  // of the step, from above
 constexpr double kShadow = 0.6;      // of a step's height: so far a higher sheet may hide the lower one
 constexpr double kCoverSigma = 4;
 constexpr std::size_t kFragments = 4;  // pieces between a sheet and the one that hides it
 constexpr int kFewestEmpty = 3;
 constexpr double kEvenPitches = 1.5;  // within which a field's sides lie evenly about x = 0
+// The noise of points three lines apart over that of neighbours: what a linear interpolation from points 0.7, 0.85, 1,
+// 1.3, 1.6 and 2 lines apart makes of independent noise is 1.1, 1.2, 1.5, 2.5, 3.5 and 5.6.
+constexpr std::size_t kNoiseApart = 3;
+constexpr double kRunsByChance = 6;  // over sqrt(points): three sigma of that quotient
+constexpr double kRunsSeen = 0.1;
+constexpr double kMeasuredApart = 0.75, kMeasuredRise = 0.65;
 constexpr double kLeastPitch_mm = 1e-12, kLeastAdvance_mm2 = 1e-24;  // the latter squared
 constexpr int kFewestLines = 256;  // of a sensor: fewer that lie evenly about x = 0 do so by chance
 constexpr int kRimLines = 5;       // an end nearer to the field's rim is none
@@ -86,6 +94,12 @@ double ContourSheets::step(const Jump& over_all, int i, int between) const {
     if (!(over_all.height > 0)) return 0;
     if (over_all.height < kWorthLooking * kStepSigma * noise_ * over_all.spread) return 0;
     const auto bent = [&](const Jump& j) { return j.rms > kStepRms * noise_ + kBentPitch * pitch_.distance; };
+    // The last points of a rim that rolls away from a lower sheet stand in between as well, all of them in the upper half.
+    if (between > 1) {
+        const double a = all_z_[i], b = all_z_[i + 1 + between], top = std::max(a, b);
+        const double least = *std::min_element(&all_z_[i + 1], &all_z_[i + between] + 1);
+        if (top - least < kUpperHalf * std::abs(a - b)) return 0;
+    }
     const Jump close = jump(i, between, kStepShort);
     const Jump& j = bent(over_all) ? close : over_all;
     if (!(j.height > 0) || bent(j)) return 0;
@@ -94,7 +108,7 @@ double ContourSheets::step(const Jump& over_all, int i, int between) const {
     if (!(j.height > std::max(kStepSigma * noise_ * j.spread, j.lines * j.longer))) return 0;
     // On a flank the points themselves rise by less than the lines miss each other.
     if (j.risen < kRisen * j.height - 3 * noise_) return 0;
-    return between > 0 && j.height < kSteepWall * j.lines * j.shorter ? 0 : j.height;
+    return j.height < kSteepWall[between] * j.lines * j.shorter ? 0 : j.height;
 }
 
 // Of neighbouring places the highest.
@@ -194,7 +208,11 @@ void ContourSheets::divide(const Profile& profile) {
         const bool broken = i + 1 == n || cut_[i] || missing(i) >= hole ||
                             (segment_[i] != segment_[i + 1] && !beside_step(i) && !goes_on(i));
         if (!broken) continue;
-        whole_.push_back({first, i - first + 1, SheetEnd::open, SheetEnd::open});
+        int before = first, after = i;
+        while (before > 0 && mixed_[before - 1]) --before;
+        while (after + 1 < n && mixed_[after + 1]) ++after;
+        whole_.push_back({first, i - first + 1, SheetEnd::open, SheetEnd::open,
+                          before < first ? line_[before] : -1, after > i ? line_[after] : -1});
         first = i + 1;
     }
 }
@@ -239,6 +257,14 @@ void ContourSheets::judge_ends(const Profile& profile, const SensorField& field)
     }
 }
 
+double ContourSheets::measured_apart() {
+    if (!(point_noise_ > 0)) return 0;
+    const double runs = contour_noise_mm(all_x_, all_z_, scratch_, kNoiseApart) / point_noise_;
+    const double chance = kRunsByChance / std::sqrt(double(all_x_.size()));
+    const double seen = std::clamp((runs - 1 - chance) / kRunsSeen, 0.0, 1.0);
+    return seen > 0 ? seen * (kMeasuredApart + kMeasuredRise * std::log(runs)) : 0;
+}
+
 void ContourSheets::gather(const Profile& profile, const FeatureWindow& window, const SensorField& field) {
     all_x_.clear();
     all_z_.clear();
@@ -275,12 +301,14 @@ void ContourSheets::gather(const Profile& profile, const FeatureWindow& window, 
             if (inside) {
                 if (!before_inside)
                     sheets_.push_back({static_cast<int>(x_.size()), 0,
-                                       i == whole.first ? whole.before : SheetEnd::window, whole.after});
+                                       i == whole.first ? whole.before : SheetEnd::window, whole.after,
+                                       i == whole.first ? whole.mixed_before : -1, whole.mixed_after});
                 x_.push_back(all_x_[i]);
                 z_.push_back(all_z_[i]);
                 ++sheets_.back().count;
             } else if (before_inside) {
                 sheets_.back().after = SheetEnd::window;
+                sheets_.back().mixed_after = -1;
             }
             before_inside = inside;
         }

@@ -10,7 +10,8 @@
 //     at a step: lines through up to twelve points on either side (six where those are bent), x and z over
 //     the line number, miss each
 //         other by more than their noise (six sigma) and by more than one spacing, measured across both of
-//         them; one point may stand in between (the light of an edge falls on both sheets).
+//         them; one or two points may stand in between (the light of an edge falls on both sheets, or interpolation
+//         has drawn a line).
 //
 // Noise model: equal all over the profile, across the contour; the larger of contour_noise_mm and of what the
 // lines miss each other by in the median, which sees noise that runs from point to point (resampling). Not
@@ -37,6 +38,8 @@ enum class SheetEnd {
 struct Sheet {
     int first, count;  // in x, z: sensor order
     SheetEnd before, after;
+    // The profile's line of the farthest point that stands in a step beside the end, on neither sheet; -1: none does.
+    int mixed_before = -1, mixed_after = -1;
 };
 
 // The sensor's field along x, where it is known beside what the profile tells. A profile that lists lines
@@ -55,8 +58,13 @@ class ContourSheets {
     const std::vector<double>& x() const { return x_; }
     const std::vector<double>& z() const { return z_; }
     const std::vector<Sheet>& sheets() const { return sheets_; }
+    double pitch_mm() const { return pitch_.along_x; }
     double noise_mm() const { return noise_; }
     double point_noise_mm() const { return point_noise_; }  // across the contour, without what its shape adds
+    // How far apart the points are that a sensor measured before it laid them on an even grid, in lines of that grid; 0
+    // where the profile's noise does not run from line to line. To be asked of an even grid only: elsewhere noise may
+    // run for other reasons.
+    double measured_apart();
 
   private:
     struct Side {

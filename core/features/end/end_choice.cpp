@@ -191,7 +191,8 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
         case SheetEnd::open:
             break;
     }
-    return ChosenEnd{chosen->first, chosen->first + chosen->count - 1, ends.at_last(*chosen)};
+    return ChosenEnd{chosen->first, chosen->first + chosen->count - 1, ends.at_last(*chosen),
+                     ends.at_last(*chosen) ? chosen->mixed_after : chosen->mixed_before};
 }
 
 }  // namespace seamwright

@@ -12,6 +12,7 @@
 #include "devices/net/socket.h"
 #include "devices/registry.h"
 #include "devices/simulated/scene/door.h"
+#include "projects/reuse/simulated_truth.h"
 
 namespace seamwright {
 namespace {
@@ -53,51 +54,6 @@ Pose workobject_from_tcp(double arc_mm, double look_ahead_mm) {
     axes.col(0) = axes.col(1).cross(door_edge(arc_mm).up).normalized();
     axes.col(2) = axes.col(0).cross(axes.col(1));
     return make_pose(axes, tip);
-}
-
-Project door_project(const SimulatedCell& cell, bool finished_profiles) {
-    Project p;
-    p.name = "simulated seam";
-    p.part.base_from_workobject = cell.base_from_workobject();
-    SensorSetup sensor;
-    sensor.id = "A";
-    sensor.driver = "simulated";
-    sensor.calibration_id = "truth";
-    RobotSetup robot;
-    robot.id = "R1";
-    Calibration c;
-    c.id = "truth";
-    c.method = "simulated truth";
-    c.sensor_id = "A";
-    c.robot_id = "R1";
-    if (!finished_profiles) c.model = cell.sensor_model();
-    c.flange_from_sensor = cell.flange_from_sensor();
-    c.verdict = Verdict::good;
-    c.created_utc = utc_now();
-    Region region;
-    region.id = "seam";
-    region.frame_name = "path";
-    region.sigma_limit_mm = 1;
-    region.sigma_limit_deg = 0.5;
-    region.base_from_frame = p.part.base_from_workobject;
-    for (const DoorSpot& door : default_door_spots()) {
-        Spot s;
-        s.id = door.id;
-        s.sensor_id = "A";
-        s.robot_id = "R1";
-        s.base_from_flange = cell.flange_for(door.workobject_from_sensor);
-        s.feature.kind = "contour-end";
-        s.feature.parameters = {{"side", 0}, {"segment", 1}};  // the flange, not the inner panel behind it
-        s.sigma_mm = 0.4;                                      // parts bend
-        s.required = false;
-        region.spot_ids.push_back(s.id);
-        p.spots.push_back(std::move(s));
-    }
-    p.regions = {region};
-    p.sensors = {sensor};
-    p.robots = {robot};
-    p.calibrations = {c};
-    return p;
 }
 
 Spot& followed_spot(Project& project) {
@@ -159,7 +115,10 @@ Expected<std::unique_ptr<SimulatedSeam>> SimulatedSeam::make(const SimulatedSeam
     const auto make_sensor = [&]() -> std::unique_ptr<ProfileSource> {
         return options.sensor ? options.sensor(cell) : make_simulated_sensor(cell);
     };
-    Project project = door_project(*cell, static_cast<bool>(options.sensor));
+    constexpr double kPartsBend_mm = 0.4;
+    Project project = simulated_door_project(*cell, "seam", kPartsBend_mm);
+    project.name = "simulated seam";
+    if (options.sensor) project.calibrations.front().model.reset();  // its profiles are in mm
     RobotSetup& robot = project.robots.front();
 
     // The path, and how the tool stands to the sensor.

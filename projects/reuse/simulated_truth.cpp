@@ -6,8 +6,8 @@
 #include "devices/exchange/files.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
-#include "devices/simulated/cell.h"
 #include "devices/simulated/gripper_cell.h"
+#include "devices/simulated/scene/door.h"
 #include "devices/simulated/scene/mesh_file.h"
 
 namespace seamwright {
@@ -30,6 +30,51 @@ Expected<Calibration> simulated_truth(const SensorSetup& sensor, const RobotSetu
     c.flange_from_sensor = cell.flange_from_sensor;
     c.verdict = Verdict::good;
     return c;
+}
+
+Project simulated_door_project(const SimulatedCell& cell, const std::string& region_id, double sigma_mm) {
+    Project p;
+    p.part.base_from_workobject = cell.base_from_workobject();
+    SensorSetup sensor;
+    sensor.id = "A";
+    sensor.driver = "simulated";
+    sensor.calibration_id = "truth";
+    RobotSetup robot;
+    robot.id = "R1";
+    robot.driver = "simulated";
+    Calibration c;
+    c.id = "truth";
+    c.method = "simulated truth";
+    c.sensor_id = sensor.id;
+    c.robot_id = robot.id;
+    c.model = cell.sensor_model();
+    c.flange_from_sensor = cell.flange_from_sensor();
+    c.verdict = Verdict::good;
+    c.created_utc = utc_now();
+    Region region;
+    region.id = region_id;
+    region.frame_name = "path";
+    region.sigma_limit_mm = 1;
+    region.sigma_limit_deg = 0.5;
+    region.base_from_frame = p.part.base_from_workobject;
+    for (const DoorSpot& door : default_door_spots()) {
+        Spot s;
+        s.id = door.id;
+        s.sensor_id = sensor.id;
+        s.robot_id = robot.id;
+        s.base_from_flange = cell.flange_for(door.workobject_from_sensor);
+        s.feature.kind = "contour-end";
+        s.feature.parameters = {{"side", 0}, {"segment", 1}};  // the flange, not the inner panel behind it
+        s.sigma_mm = sigma_mm;
+        s.required = false;
+        region.spot_ids.push_back(s.id);
+        p.spots.push_back(std::move(s));
+    }
+    p.sensors = {std::move(sensor)};
+    p.robots = {std::move(robot)};
+    p.calibrations = {std::move(c)};
+    p.regions = {std::move(region)};
+    return p;
 }
 
 Expected<Project> simulated_panel_project(const nlohmann::json& given) {

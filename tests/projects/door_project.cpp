@@ -4,6 +4,7 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
 #include "devices/simulated/scene/door.h"
+#include "projects/reuse/simulated_truth.h"
 
 namespace seamwright {
 
@@ -22,56 +23,22 @@ FeatureRecipe edge_recipe() {
 }
 
 Project door_project(const SimulatedCell& cell, const nlohmann::json& settings) {
-    Project p;
+    constexpr double kSigma_mm = 0.1;
+    Project p = simulated_door_project(cell, "all", kSigma_mm);
     p.name = "door";
-    p.part.base_from_workobject = cell.base_from_workobject();
-    SensorSetup sensor;
-    sensor.id = "A";
-    sensor.driver = "simulated";
-    sensor.settings = settings;
-    sensor.calibration_id = "truth";
-    RobotSetup robot;
-    robot.id = "R1";
-    robot.driver = "simulated";
-    robot.settings = settings;
+    SensorSetup& sensor = p.sensors.front();
+    RobotSetup& robot = p.robots.front();
+    sensor.settings = robot.settings = settings;
     DeviceSession session;
     sensor.identity = (*open_sensor("simulated", settings, session))->identity();
     robot.identity = *(*open_robot("simulated", settings, session))->identity();
-    Calibration c;
-    c.id = "truth";
-    c.method = "simulated truth";
-    c.sensor_id = "A";
-    c.robot_id = "R1";
-    c.sensor_identity = sensor.identity;
-    c.robot_identity = robot.identity;
-    c.model = cell.sensor_model();
-    c.flange_from_sensor = cell.flange_from_sensor();
-    c.verdict = Verdict::good;
-    c.created_utc = utc_now();
-    p.sensors = {sensor};
-    p.robots = {robot};
-    p.calibrations = {c};
-    Region region;
-    region.id = "all";
-    region.frame_name = "path";
-    region.sigma_limit_mm = 1;
-    region.sigma_limit_deg = 0.5;
-    region.base_from_frame = p.part.base_from_workobject;
-    for (const DoorSpot& door : default_door_spots()) {
-        Spot s;
-        s.id = door.id;
-        s.sensor_id = "A";
-        s.robot_id = "R1";
-        s.base_from_flange = cell.flange_for(door.workobject_from_sensor);
-        s.entry_mm = door.entry_mm;
-        s.exit_mm = door.exit_mm;
-        s.feature = edge_recipe();
-        s.sigma_mm = 0.1;
-        s.required = false;
-        p.spots.push_back(s);
-        region.spot_ids.push_back(s.id);
+    p.calibrations.front().sensor_identity = sensor.identity;
+    p.calibrations.front().robot_identity = robot.identity;
+    const auto doors = default_door_spots();
+    for (std::size_t i = 0; i < p.spots.size(); ++i) {
+        p.spots[i].entry_mm = doors[i].entry_mm;
+        p.spots[i].exit_mm = doors[i].exit_mm;
     }
-    p.regions = {region};
     return p;
 }
 

@@ -9,6 +9,7 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/net/socket.h"
 #include "devices/simulated/scene/door.h"
+#include "projects/reuse/simulated_truth.h"
 #include "projects/station/acquire.h"
 #include "projects/station/teach.h"
 
@@ -29,11 +30,10 @@ Expected<ServedCell> serve_cell(const ServedCellOptions& options, const std::fil
     if (!cell) return tl::unexpected(cell.error());
     served.cell = *cell;
 
-    Project p;
+    constexpr double kSigma_mm = 0.2;
+    Project p = simulated_door_project(*served.cell, "all", kSigma_mm);
     p.name = "served door";
-    p.part.base_from_workobject = served.cell->base_from_workobject();
-    SensorSetup sensor;
-    sensor.id = "A";
+    SensorSetup& sensor = p.sensors.front();
     sensor.driver = "genicam";
     sensor.settings = {{"hardware_trigger", true}, {"buffers", 32}};
     nlohmann::json ports;
@@ -56,9 +56,7 @@ Expected<ServedCell> serve_cell(const ServedCellOptions& options, const std::fil
     served.sensor.emplace(std::move(*sensor_server));
     if (!options.gocator)
         sensor.settings["address"] = served.sensor_options.camera_address = served.sensor->camera_address();
-    sensor.calibration_id = "truth";
-    RobotSetup robot;
-    robot.id = "R1";
+    RobotSetup& robot = p.robots.front();
     robot.driver = options.driver;
     robot.settings = {{"port", port}};
     // A UR's arm is commanded once in its cycle, which bounds how much faster than real it can be.
@@ -68,38 +66,6 @@ Expected<ServedCell> serve_cell(const ServedCellOptions& options, const std::fil
     if (options.driver == "ur-rtde")
         robot.settings["dashboard_port"] = controller["dashboard_port"] =
             TcpListener::listen("127.0.0.1", 0)->port();
-    Calibration c;
-    c.id = "truth";
-    c.method = "simulated truth";
-    c.sensor_id = "A";
-    c.robot_id = "R1";
-    c.model = served.cell->sensor_model();
-    c.flange_from_sensor = served.cell->flange_from_sensor();
-    c.verdict = Verdict::good;
-    c.created_utc = utc_now();
-    Region region;
-    region.id = "all";
-    region.frame_name = "path";
-    region.sigma_limit_mm = 1;
-    region.sigma_limit_deg = 0.5;
-    region.base_from_frame = p.part.base_from_workobject;
-    for (const DoorSpot& door : default_door_spots()) {
-        Spot s;
-        s.id = door.id;
-        s.sensor_id = "A";
-        s.robot_id = "R1";
-        s.base_from_flange = served.cell->flange_for(door.workobject_from_sensor);
-        s.feature.kind = "contour-end";
-        s.feature.parameters = {{"side", 0}, {"segment", 1}};
-        s.sigma_mm = 0.2;
-        s.required = false;
-        p.spots.push_back(s);
-        region.spot_ids.push_back(s.id);
-    }
-    p.regions = {region};
-    p.sensors = {sensor};
-    p.robots = {robot};
-    p.calibrations = {c};
 
     served.robot_options.controllers = {{options.driver, controller}};
     served.robot_options.program = measuring_program(p, "R1");

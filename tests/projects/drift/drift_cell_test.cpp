@@ -10,6 +10,7 @@
 #include "devices/simulated/cell.h"
 #include "devices/simulated/scene/door.h"
 #include "projects/drift/drift_edits.h"
+#include "projects/reuse/simulated_truth.h"
 #include "projects/station/watch.h"
 #include "tests/projects/sample_project.h"
 
@@ -42,53 +43,14 @@ class DriftingCell : public testing::Test {
                                              {"frames", {{"path", frame}}}}}});
         ASSERT_TRUE(opened) << opened.error().sentence();
         cell = *opened;
-        Project p;
+        constexpr double kSigma_mm = 0.1;
+        Project p = simulated_door_project(*cell, "all", kSigma_mm);
         p.name = "drifting door";
-        p.part.base_from_workobject = cell->base_from_workobject();
-        SensorSetup sensor;
-        sensor.id = "A";
-        sensor.driver = "simulated";
-        sensor.calibration_id = "truth";
-        RobotSetup robot;
-        robot.id = "R1";
-        robot.driver = "simulated";
-        Calibration c;
-        c.id = "truth";
-        c.method = "simulated truth";
-        c.sensor_id = "A";
-        c.robot_id = "R1";
-        c.model = cell->sensor_model();
-        c.flange_from_sensor = cell->flange_from_sensor();
-        c.verdict = Verdict::good;
-        c.created_utc = utc_now();
-        c.sensor_identity = make_simulated_sensor(cell)->identity();
-        c.robot_identity = *make_simulated_robot(cell)->identity();
-        Region region;
-        region.id = "all";
-        region.frame_name = "path";
-        region.sigma_limit_mm = 1;
-        region.sigma_limit_deg = 0.5;
-        region.base_from_frame = p.part.base_from_workobject;
-        for (const DoorSpot& door : default_door_spots()) {
-            Spot s;
-            s.id = door.id;
-            s.sensor_id = "A";
-            s.robot_id = "R1";
-            s.base_from_flange = cell->flange_for(door.workobject_from_sensor);
-            s.feature.kind = "contour-end";
-            s.feature.parameters = {{"side", 0}, {"segment", 1}};
-            s.sigma_mm = 0.1;
-            s.required = false;
-            p.spots.push_back(s);
-            region.spot_ids.push_back(s.id);
-        }
+        p.calibrations.front().sensor_identity = make_simulated_sensor(cell)->identity();
+        p.calibrations.front().robot_identity = *make_simulated_robot(cell)->identity();
         Spot w = p.spots.front();  // the part stands still: its first edge is as good as a bracket
         w.id = "W1";
         p.spots.push_back(w);
-        p.regions = {region};
-        p.sensors = {sensor};
-        p.robots = {robot};
-        p.calibrations = {c};
         ASSERT_TRUE(set_drift_watch(p, {.spot_ids = {"W1"}}));
         auto file = ProjectFile::create(folder / "cell.seam", p, true);
         ASSERT_TRUE(file) << file.error().sentence();

@@ -29,6 +29,7 @@ constexpr double kEvenPitches = 1.5;  // within which a field's sides lie evenly
 // The noise of points three lines apart over that of neighbours: what a linear interpolation from points 0.7, 0.85, 1,
 // 1.3, 1.6 and 2 lines apart makes of independent noise is 1.1, 1.2, 1.5, 2.5, 3.5 and 5.6.
 constexpr std::size_t kNoiseApart = 3;
+constexpr double kNoNoise = 1e-3;    // pitches: less is rounding and shape
 constexpr double kRunsByChance = 6;  // over sqrt(points): three sigma of that quotient
 constexpr double kRunsSeen = 0.1;
 constexpr double kMeasuredApart = 0.75, kMeasuredRise = 0.65;
@@ -258,8 +259,9 @@ void ContourSheets::judge_ends(const Profile& profile, const SensorField& field)
 }
 
 double ContourSheets::measured_apart() {
-    if (!(point_noise_ > 0)) return 0;
-    const double runs = contour_noise_mm(all_x_, all_z_, scratch_, kNoiseApart) / point_noise_;
+    const double apart = contour_noise_mm(all_x_, all_z_, scratch_, kNoiseApart);
+    if (!(point_noise_ > 0) || apart < kNoNoise * pitch_.along_x) return 0;
+    const double runs = apart / point_noise_;
     const double chance = kRunsByChance / std::sqrt(double(all_x_.size()));
     const double seen = std::clamp((runs - 1 - chance) / kRunsSeen, 0.0, 1.0);
     return seen > 0 ? seen * (kMeasuredApart + kMeasuredRise * std::log(runs)) : 0;

@@ -18,6 +18,7 @@ constexpr double kEndPointsKept = 0.75;  // of the line's, for a parabola to be 
 constexpr double kEndLeastVariance = 1e-300;  // of a curvature: divided by
 constexpr double kEndSingular = 1e-9;         // reciprocal condition
 constexpr double kEndMostTurned_rad = 1.5;    // over one sigma of the points' spread
+constexpr double kEndShortestStep = 0.01;
 constexpr double kEndSettled = 1e-9;
 
 EndCurve straight(const LineFit& line) {
@@ -47,9 +48,10 @@ void shrink(double share, EndCurve& curve) {
 
 }  // namespace
 
-EndFit::Result EndFit::fit(std::span<const double> x, std::span<const double> z) {
+EndFit::Result EndFit::fit(std::span<const double> x, std::span<const double> z, double noise_mm) {
     x_ = x;
     z_ = z;
+    noise_ = noise_mm;
     Result result;
     const LineFit line = fit_line(x, z, workspace_);
     if (!line.ok) return result;
@@ -67,7 +69,8 @@ bool EndFit::fit_arc(const LineFit& line, EndCurve& curve) {
     keep_.assign(x_.size(), 1);
     for (int round = 0; round < 12; ++round) {
         if (!least_squares(trial)) return false;
-        const double gate = std::max(kEndGate * kMadToSigma * median_residual(trial), kEndSmallest_mm);
+        const double sigma = std::max(kMadToSigma * median_residual(trial), noise_);
+        const double gate = std::max(kEndGate * sigma, kEndSmallest_mm);
         bool changed = false;
         for (std::size_t i = 0; i < x_.size(); ++i) {
             const std::uint8_t in = std::abs(trial.residual(point(i))) <= gate;
@@ -147,6 +150,7 @@ bool EndFit::least_squares(EndCurve& curve) const {
     if (curve.direction.dot(point(0) - point(x_.size() - 1)) < 0) curve.direction = -curve.direction;
     curve.chord = curve.direction;
     curve.curvature = 0;
+    double rss = squares(curve);
     // Gauss-Newton, in units of `size`, so that the equations are as well conditioned at every scale.
     const Eigen::Vector3d unit(1, 1 / size, 1 / (size * size));
     for (int round = 0; round < 8; ++round) {
@@ -162,15 +166,22 @@ bool EndFit::least_squares(EndCurve& curve) const {
         const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
         if (!(solver.rcond() > kEndSingular)) return false;
         const Eigen::Vector3d b = unit.asDiagonal() * Eigen::Vector3d(solver.solve(right));
-        curve.move(b[0], b[1], 2 * b[2]);
+        // A step that leaves the points is too long.
+        const EndCurve before = curve;
+        double share = 1;
+        for (; share > kEndShortestStep; share /= 2) {
+            curve = before;
+            curve.move(share * b[0], share * b[1], share * 2 * b[2]);
+            const double now = squares(curve);
+            if (now > rss) continue;
+            rss = now;
+            break;
+        }
         curve.cofactor = unit.asDiagonal() * Eigen::Matrix3d(solver.solve(Eigen::Matrix3d::Identity())) *
                          unit.asDiagonal();
         if (!(std::abs(curve.curvature) * size < kEndMostTurned_rad)) return false;
-        if (std::abs(b[2]) * size * size < kEndSettled * size) break;
+        if (share <= kEndShortestStep || std::abs(b[2]) * size * size < kEndSettled * size) break;
     }
-    double rss = 0;
-    for (std::size_t i = 0; i < x_.size(); ++i)
-        if (keep_[i]) rss += curve.residual(point(i)) * curve.residual(point(i));
     const int freedom = used - 3;
     curve.used = used;
     curve.spread_mm2 = xx * curve.chord.x() * curve.chord.x() + 2 * xz * curve.chord.x() * curve.chord.y() +
@@ -179,6 +190,13 @@ bool EndFit::least_squares(EndCurve& curve) const {
     curve.sigma_mm = std::sqrt(rss / freedom);
     curve.widening = freedom > 4 ? double(freedom) / (freedom - 2) : 2.0;
     return true;
+}
+
+double EndFit::squares(const EndCurve& curve) const {
+    double rss = 0;
+    for (std::size_t i = 0; i < x_.size(); ++i)
+        if (keep_[i]) rss += curve.residual(point(i)) * curve.residual(point(i));
+    return rss;
 }
 
 double EndFit::median_residual(const EndCurve& curve) {

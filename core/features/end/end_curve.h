@@ -1,8 +1,8 @@
 #pragma once
 // A contour near its end as a line or, where it is rounded there, an arc of a circle (methods.md 2).
 //
-// The line is fit_line()'s. The arc goes through the points within 3.5 robust sigma of it (median size of the residuals,
-// iterated), by Gauss-Newton on their distances from it:
+// The line is fit_line()'s. The arc goes through the points within 3.5 robust sigma of it (median size of the residuals, not
+// less than the profile's noise; iterated), by Gauss-Newton on their distances from it:
 //     residual(p) = b0 + b1 s + b2 s^2,   s along the arc, outwards; an offset, a turn and half a change of curvature.
 // A hem seen to its steep end turns by 80 degrees over the points: a parabola over their chord would see less of the slope
 // there than there is. With T = (curvature / sigma(curvature))^2 the arc counts by w = 1 - 2 / T, between it and the chord of
@@ -71,21 +71,23 @@ struct EndCurve {
 class EndFit {
   public:
     // Line through the points, from the end inwards, and the arc where that explains them better. `ok` false: they form no
-    // line. `rounded`: the arc it is.
+    // line. `rounded`: the arc it is. `noise_mm`: of the profile's points, 0 where unknown.
     struct Result {
         bool ok = false, rounded = false;
         EndCurve curve;
     };
-    Result fit(std::span<const double> x, std::span<const double> z);
+    Result fit(std::span<const double> x, std::span<const double> z, double noise_mm);
 
   private:
     Eigen::Vector2d point(std::size_t i) const { return {x_[i], z_[i]}; }
     bool fit_arc(const LineFit& line, EndCurve& curve);
     bool least_squares(EndCurve& curve) const;
     Eigen::Vector4d cubic(const EndCurve& curve) const;
+    double squares(const EndCurve& curve) const;
     double median_residual(const EndCurve& curve);
 
     std::span<const double> x_, z_;
+    double noise_ = 0;
     std::vector<double> scratch_;
     std::vector<std::uint8_t> keep_;
     LineWorkspace workspace_;

@@ -107,7 +107,7 @@ class ContourEnd final : public FeatureFinder {
         if (!chosen) return feature;
         const bool at_last = chosen->at_last;
         take_end(chosen->first, chosen->last, at_last);
-        const EndFit::Result fit = fit_.fit(fit_x_, fit_z_);
+        const EndFit::Result fit = fit_.fit(fit_x_, fit_z_, sheets_.point_noise_mm());
         if (!fit.ok) {
             feature.message = "the points before the end do not form a line";
             return feature;

@@ -24,10 +24,18 @@ namespace seamwright {
 
 // Noise of a single point across the contour, 1 sigma, from fourth differences (1, -4, 6, -4, 1) / sqrt(70)
 // projected on the local normal: shape up to the third order cancels; the median makes it blind to corners
-// and outliers. 0 when fewer than 8 differences exist. `x`, `z` finite, in contour order. `apart`: of points so many
-// lines apart, which depend less on one another where an interpolation lies behind them.
-double contour_noise_mm(std::span<const double> x, std::span<const double> z, std::vector<double>& scratch,
-                        std::size_t apart = 1);
+// and outliers. 0 when fewer than 8 differences exist. `x`, `z` finite, in contour order.
+// A sensor may measure coarser than the even grid that it delivers. What it interpolated runs from line to line, so that
+// neighbours hide their noise: there it is taken from points three lines apart.
+struct ContourNoise {
+    double point_mm = 0;
+    double neighbours_mm = 0;  // as neighbours have it
+    double measured_apart =
+        0;  // lines of the grid between points that were measured; 0: nothing says that they were others
+};
+ContourNoise contour_noise(std::span<const double> x, std::span<const double> z,
+                           std::vector<double>& scratch);
+double contour_noise_mm(std::span<const double> x, std::span<const double> z, std::vector<double>& scratch);
 
 // Gaps: where two neighbours are no neighbours on the surface.
 struct ContourPitch {

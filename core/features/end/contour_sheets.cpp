@@ -26,13 +26,6 @@ constexpr double kCoverSigma = 4;
 constexpr std::size_t kFragments = 4;  // pieces between a sheet and the one that hides it
 constexpr int kFewestEmpty = 3;
 constexpr double kEvenPitches = 1.5;  // within which a field's sides lie evenly about x = 0
-// The noise of points three lines apart over that of neighbours: what a linear interpolation from points 0.7, 0.85, 1,
-// 1.3, 1.6 and 2 lines apart makes of independent noise is 1.1, 1.2, 1.5, 2.5, 3.5 and 5.6.
-constexpr std::size_t kNoiseApart = 3;
-constexpr double kNoNoise = 1e-3;    // pitches: less is rounding and shape
-constexpr double kRunsByChance = 6;  // over sqrt(points): three sigma of that quotient
-constexpr double kRunsSeen = 0.1;
-constexpr double kMeasuredApart = 0.75, kMeasuredRise = 0.65;
 constexpr double kLeastPitch_mm = 1e-12, kLeastAdvance_mm2 = 1e-24;  // the latter squared
 constexpr int kFewestLines = 256;  // of a sensor: fewer that lie evenly about x = 0 do so by chance
 constexpr int kRimLines = 5;       // an end nearer to the field's rim is none
@@ -258,15 +251,6 @@ void ContourSheets::judge_ends(const Profile& profile, const SensorField& field)
     }
 }
 
-double ContourSheets::measured_apart() {
-    const double apart = contour_noise_mm(all_x_, all_z_, scratch_, kNoiseApart);
-    if (!(point_noise_ > 0) || apart < kNoNoise * pitch_.along_x) return 0;
-    const double runs = apart / point_noise_;
-    const double chance = kRunsByChance / std::sqrt(double(all_x_.size()));
-    const double seen = std::clamp((runs - 1 - chance) / kRunsSeen, 0.0, 1.0);
-    return seen > 0 ? seen * (kMeasuredApart + kMeasuredRise * std::log(runs)) : 0;
-}
-
 void ContourSheets::gather(const Profile& profile, const FeatureWindow& window, const SensorField& field) {
     all_x_.clear();
     all_z_.clear();
@@ -283,8 +267,9 @@ void ContourSheets::gather(const Profile& profile, const FeatureWindow& window, 
         segment_.push_back(marked ? profile.segment[i] : 0);
     }
     pitch_ = contour_pitch(all_x_, all_z_, scratch_);
-    noise_ = contour_noise_mm(all_x_, all_z_, scratch_);
-    point_noise_ = noise_;
+    const ContourNoise noise = contour_noise(all_x_, all_z_, scratch_);
+    noise_ = point_noise_ = noise.point_mm;
+    measured_apart_ = noise.measured_apart;
     if (!marked)
         for (std::size_t i = 1; i < all_x_.size(); ++i) {
             const double dx = all_x_[i] - all_x_[i - 1], dz = all_z_[i] - all_z_[i - 1];

@@ -58,13 +58,9 @@ class ContourSheets {
     const std::vector<double>& x() const { return x_; }
     const std::vector<double>& z() const { return z_; }
     const std::vector<Sheet>& sheets() const { return sheets_; }
-    double pitch_mm() const { return pitch_.along_x; }
     double noise_mm() const { return noise_; }
     double point_noise_mm() const { return point_noise_; }  // across the contour, without what its shape adds
-    // How far apart the points are that a sensor measured before it laid them on an even grid, in lines of that grid; 0
-    // where the profile's noise does not run from line to line. To be asked of an even grid only: elsewhere noise may
-    // run for other reasons.
-    double measured_apart();
+    double measured_apart() const { return measured_apart_; }  // ContourNoise
 
   private:
     struct Side {
@@ -103,7 +99,7 @@ class ContourSheets {
     std::vector<double> x_, z_;
     std::vector<Sheet> sheets_;
     ContourPitch pitch_;
-    double noise_ = 0, point_noise_ = 0;
+    double noise_ = 0, point_noise_ = 0, measured_apart_ = 0;
 };
 
 }  // namespace seamwright

@@ -9,7 +9,7 @@
 // what may hold the end, q long instead of p:
 //     - points that stand in a step behind the end and on neither sheet: as far as the farthest of them stands ahead;
 //     - an even grid of x whose noise runs from point to point: a sensor measured points f pitches apart and laid them on
-//       the grid (ContourSheets::measured_apart), so that the surface ends up to f p beyond what was measured last.
+//       the grid (ContourNoise), so that the surface ends up to f p beyond what was measured last.
 //
 // Its covariance, along the tangent at the point and across it. Noise model: independent, equal, across the
 // contour, its sigma from the fit's residuals, and not below what the profile's noise beside them makes likely; of
@@ -64,8 +64,7 @@ constexpr double kEndFaded = 0.6;           // of the intensity before the end
 constexpr double kEndLongStep = 1.5;        // pitches
 constexpr std::size_t kEndLastPoints = 3;
 constexpr int kEndDoubtfulLines = 6;
-constexpr double kEndBeside = 3;   // pitches
-constexpr double kEndEven = 1e-4;  // of the pitch: an even grid's rounding
+constexpr double kEndBeside = 3;  // pitches
 // Interpolated between points that were measured f pitches apart, n of them are worth n / (1.5 f).
 constexpr double kEndDependent = 1.5;
 constexpr double kEndMisfit = 2.5;  // sigma of the last points' mean
@@ -114,8 +113,7 @@ class ContourEnd final : public FeatureFinder {
         }
         EndCurve curve = fit.curve;
         const bool rounded = fit.rounded;
-        const bool even = sideways_noise() < kEndEven * sheets_.pitch_mm();
-        const double apart = even ? sheets_.measured_apart() : 0;
+        const double apart = sheets_.measured_apart();
         know_noise(apart, curve);
         const double last_s = curve.along(point(0));
         const double pitch = pitch_at(curve, rounded ? curve.tangent(last_s) : curve.direction, rounded);

@@ -1,14 +1,17 @@
-// RAPID: modules of data and routines.
+// What RAPID does: data, functions and motions.
+
+#include "devices/robot_path/rapid_machine.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/geometry/notation.h"
-#include "devices/robot_path/machine.h"
 
 namespace seamwright::program_path {
+
 namespace {
 
 std::optional<Eigen::Vector3d> vector_of(const Value& v) {
@@ -48,13 +51,9 @@ std::optional<bool> truth_at(const Value& v, std::size_t i) {
     return v.kind == Value::Kind::list && i < v.parts.size() ? v.parts[i].as_truth() : std::nullopt;
 }
 
-// Which statements move, and how many of their first positions are poses. Instructions of process packages end in the same
-// letters (ArcL, DispC, PaintL, SpotJ): the letter behind the name tells the motion.
-struct Instruction {
-    ProgramMotion motion;
-    bool absolute = false, only_external = false, search = false;
-};
-std::optional<Instruction> instruction(std::string_view word) {
+}  // namespace
+
+std::optional<Rapid::Instruction> Rapid::instruction(std::string_view word) {
     static const std::map<std::string_view, Instruction, std::less<>> odd = {
         {"moveabsj", {ProgramMotion::joint, true}},
         {"moveextj", {ProgramMotion::joint, true, true}},
@@ -82,475 +81,263 @@ std::optional<Instruction> instruction(std::string_view word) {
     return {};
 }
 
-class Rapid final : public Machine {
-  public:
-    explicit Rapid(const ProgramPathOptions& options) : Machine(Dialect::rapid, options) {
-        const Value zero = rapid_pose_value(Pose::Identity());
-        globals_["wobj0"] =
-            Value::list({Value::of_truth(false), Value::of_truth(true), Value::of_text(""), zero, zero});
-        globals_["tool0"] = Value::list({Value::of_truth(true), zero});
-    }
+Rapid::Rapid(const ProgramPathOptions& options) : Machine(Dialect::rapid, options) {
+    const Value zero = rapid_pose_value(Pose::Identity());
+    globals_["wobj0"] =
+        Value::list({Value::of_truth(false), Value::of_truth(true), Value::of_text(""), zero, zero});
+    globals_["tool0"] = Value::list({Value::of_truth(true), zero});
+}
 
-    void load(int file, std::string_view text) override {
-        tokens_.clear();
-        for (Token& t : tokens_of(text, Dialect::rapid))
-            if (t.kind != Token::Kind::newline) tokens_.push_back(std::move(t));
-        file_ = file;
-        Cursor c(tokens_);
-        while (!c.done() && !c.is("module")) c.take();  // %%% VERSION:1 LANGUAGE:ENGLISH %%%
-        while (!c.done()) {
-            const Token t = c.peek();
-            std::size_t skip = c.is("local") || c.is("task") ? 1 : 0;
-            if (c.is("proc", skip) || c.is("func", skip) || c.is("trap", skip)) {
-                for (; skip > 0; --skip) c.take();
-                routine(c);
-            } else if (c.is("module")) {
-                note(file_, t.line, LineKind::understood);
-                while (!c.done() && c.peek().line == t.line) c.take();
-            } else if (c.is("record")) {
-                note(file_, t.line, LineKind::passed_over);
-                while (!c.done() && !c.accept("endrecord")) c.take();
-            } else if (c.is("endmodule")) {
-                note(file_, t.line, LineKind::understood);
-                c.take();
-            } else {
-                Statement s = one(c);
-                const Flow ignored = run_statement(s);
-                (void)ignored;
-            }
-        }
-    }
+bool Rapid::moves(const std::string& word) const {
+    return instruction(word).has_value();
+}
 
-  protected:
-    bool moves(const std::string& word) const override { return instruction(word).has_value(); }
-    std::optional<std::string> preferred() const override { return "main"; }
-
-    void begin() override {
-        for (const auto& [name, pose] : options_.frames) {
-            std::string folded = name;
-            std::transform(folded.begin(), folded.end(), folded.begin(),
-                           [](unsigned char c) { return std::tolower(c); });
-            globals_[folded] = Value::list({Value::of_truth(false), Value::of_truth(true), Value::of_text(""),
-                                            rapid_pose_value(pose), rapid_pose_value(Pose::Identity())});
-        }
+void Rapid::begin() {
+    for (const auto& [name, pose] : options_.frames) {
+        std::string folded = name;
+        std::transform(folded.begin(), folded.end(), folded.begin(),
+                       [](unsigned char c) { return std::tolower(c); });
+        globals_[folded] = Value::list({Value::of_truth(false), Value::of_truth(true), Value::of_text(""),
+                                        rapid_pose_value(pose), rapid_pose_value(Pose::Identity())});
     }
+}
 
-    Flow execute(const Statement& s) override {
-        Cursor c(s.tokens);
-        const std::string word = c.peek().text;
-        if (const auto how = instruction(word)) {
-            c.take();
-            motion(*how, read_arguments(c, Dialect::rapid, ""));
-            return Flow::on;
-        }
-        if (word == "return") {
-            note(LineKind::understood);
-            return Flow::back;
-        }
-        if (word == "exit" || word == "exitcycle" || word == "stop" || word == "break" || word == "raise" ||
-            word == "trynext" || word == "retry" || word == "connect" || word == "alias") {
-            note(LineKind::passed_over);
-            return word == "exit" ? Flow::back : Flow::on;
-        }
-        if (word == "goto") {
-            note(LineKind::not_understood, "jumps are not followed");
-            return Flow::on;
-        }
-        if (declares(c)) {
-            declaration(c);
-            return Flow::on;
-        }
-        if (s.tokens.size() == 2 && c.is(":", 1)) {  // a label
-            note(LineKind::understood);
-            return Flow::on;
-        }
-        if (c.is("%")) {
-            note(LineKind::passed_over, "a routine whose name the program makes while it runs");
-            return Flow::on;
-        }
-        const std::size_t from = c.at();
-        const auto place = read_expression(c, Dialect::rapid);
-        if (c.accept(":=")) {
-            assign(*place, value_of(*read_expression(c, Dialect::rapid)));
-            note(LineKind::understood);
-            return Flow::on;
-        }
-        c.go_to(from);
-        const std::string name = c.name();
-        return instruction_call(name, read_arguments(c, Dialect::rapid, ""));
-    }
-
-    Value call(const Expr& e) override {
-        std::vector<Value> a;
-        std::map<std::string, double> options;
-        for (const Argument& part : e.parts) {
-            const Value v = part.value ? value_of(*part.value) : Value{};
-            if (!part.optional) a.push_back(v);
-            if (const auto n = v.as_number(); part.optional && n) options[part.name] = *n;
-            if (part.optional && part.value && !v.as_number()) return Value::unknown(v.text);
-        }
-        const auto number = [&](std::size_t i) { return i < a.size() ? a[i].as_number() : std::nullopt; };
-        const auto unknown = [&] {
-            for (const Value& v : a)
-                if (!v.known() && !v.text.empty()) return Value::unknown(v.text);
-            return Value::unknown(shown(e));
-        };
-        if ((e.text == "offs" || e.text == "reltool") && a.size() == 4) {
-            const auto target = pose_at(a[0]);
-            const auto x = number(1), y = number(2), z = number(3);
-            if (!target || !x || !y || !z) return unknown();
-            Pose moved = *target;
-            if (e.text == "offs") {
-                moved.translation() += Eigen::Vector3d(*x, *y, *z);
-            } else {  // displaced, then turned about x, y, z of the tool as it then stands
-                const Eigen::Matrix3d turn =
-                    (Eigen::AngleAxisd(rad_from_deg(options["rx"]), Eigen::Vector3d::UnitX()) *
-                     Eigen::AngleAxisd(rad_from_deg(options["ry"]), Eigen::Vector3d::UnitY()) *
-                     Eigen::AngleAxisd(rad_from_deg(options["rz"]), Eigen::Vector3d::UnitZ()))
-                        .toRotationMatrix();
-                moved = *target * make_pose(turn, {*x, *y, *z});
-            }
-            Value v = a[0];
-            const Value pose = rapid_pose_value(moved);
-            v.parts[0] = pose.parts[0];
-            v.parts[1] = pose.parts[1];
-            return v;
-        }
-        if (e.text == "posemult" && a.size() == 2) {
-            const auto p = pose_at(a[0]), q = pose_at(a[1]);
-            return p && q ? rapid_pose_value(*p * *q) : unknown();
-        }
-        if (e.text == "poseinv" && a.size() == 1) {
-            const auto p = pose_at(a[0]);
-            return p ? rapid_pose_value(p->inverse()) : unknown();
-        }
-        if (e.text == "posevect" && a.size() == 2) {
-            const auto p = pose_at(a[0]);
-            const auto v = vector_of(a[1]);
-            if (!p || !v) return unknown();
-            const Eigen::Vector3d r = *p * *v;
-            return Value::numbers({r.x(), r.y(), r.z()});
-        }
-        if (e.text == "orientzyx" && a.size() == 3) {
-            const auto z = number(0), y = number(1), x = number(2);
-            if (!x || !y || !z) return unknown();
-            const AbbQuaternion q = abb_from_rotation(rotation_from_kuka({*z, *y, *x}));
-            return Value::numbers({q.w, q.x, q.y, q.z});
-        }
-        if (e.text == "dim" && a.size() == 2 && a[0].kind == Value::Kind::list && number(1) == 1.0)
-            return Value::of(static_cast<double>(a[0].parts.size()));
-        if (const auto x = number(0); x && a.size() == 1) {
-            if (e.text == "sin") return Value::of(std::sin(rad_from_deg(*x)));
-            if (e.text == "cos") return Value::of(std::cos(rad_from_deg(*x)));
-            if (e.text == "tan") return Value::of(std::tan(rad_from_deg(*x)));
-            if (e.text == "abs") return Value::of(std::abs(*x));
-            if (e.text == "sqrt" && *x >= 0) return Value::of(std::sqrt(*x));
-            if (e.text == "trunc" && options.empty()) return Value::of(std::trunc(*x));
-            if (e.text == "round" && options.empty()) return Value::of(std::round(*x));
-        }
-        if (const auto x = number(0), y = number(1); x && y && e.text == "pow")
-            return Value::of(std::pow(*x, *y));
-        return unknown();
-    }
-
-  private:
-    static bool declares(const Cursor& c) {
-        for (const std::size_t i : {0, 1}) {
-            if (c.is("const", i) || c.is("pers", i) || c.is("var", i))
-                return i == 0 || c.is("local") || c.is("task");
-        }
-        return false;
-    }
-    void declaration(Cursor& c) {
-        const bool local = c.accept("local");
-        if (!local) c.accept("task");
+Machine::Flow Rapid::execute(const Statement& s) {
+    Cursor c(s.tokens);
+    const std::string word = c.peek().text;
+    if (const auto how = instruction(word)) {
         c.take();
-        const std::string type = c.name();
-        const std::string name = c.name();
-        if (c.accept("{")) read_arguments(c, Dialect::rapid, "}");
-        Value value = Value::unknown(name);
-        if (c.accept(":=")) value = value_of(*read_expression(c, Dialect::rapid));
-        if (value.known() || !variable(name)) declare(name, std::move(value), true);
-        note(LineKind::understood);
-    }
-
-    static bool closes(const Cursor& c) {
-        static const std::set<std::string> words = {"endproc", "endfunc",  "endtrap", "endmodule", "error",
-                                                    "undo",    "backward", "endif",   "elseif",    "else",
-                                                    "endfor",  "endwhile", "case",    "default",   "endtest"};
-        return c.peek().kind == Token::Kind::name && words.count(c.peek().text) > 0;
-    }
-
-    ExprPtr condition(Cursor& c) {
-        try {
-            return read_expression(c, Dialect::rapid);
-        } catch (const Misread&) {
-            auto e = std::make_shared<Expr>();
-            e->kind = Expr::Kind::name;
-            e->text = "?";
-            return e;
-        }
-    }
-    Block block(Cursor& c, int depth) {
-        Block all;
-        while (!c.done() && !closes(c)) all.push_back(statement(c, depth));
-        return all;
-    }
-
-    // A statement without blocks, up to its semicolon.
-    Statement one(Cursor& c) {
-        Statement s;
-        s.file = file_;
-        s.line = c.peek().line;
-        note(file_, s.line, LineKind::not_reached);
-        while (!c.done() && !c.is(";")) {
-            s.tokens.push_back(c.take());
-            // A semicolon that was forgotten, or a label.
-            if (s.tokens.size() == 2 && s.tokens[1].text == ":" && s.tokens[0].kind == Token::Kind::name)
-                return s;
-            if (closes(c) && c.peek().line != s.tokens.back().line) break;
-        }
-        c.accept(";");
-        return s;
-    }
-
-    Statement statement(Cursor& c, int depth) {
-        Statement s;
-        s.file = file_;
-        s.line = c.peek().line;
-        const bool shallow = depth < kDeepestNesting;
-        note(file_, s.line, LineKind::not_reached);
-        if (shallow && c.accept("if")) {
-            s.kind = Statement::Kind::branch;
-            auto asked = condition(c);
-            if (!c.accept("then")) {
-                s.branches.emplace_back(asked, Block{});
-                s.branches.back().second.push_back(c.done() ? Statement{} : statement(c, depth + 1));
-                return s;
-            }
-            s.branches.emplace_back(asked, block(c, depth + 1));
-            for (;;) {
-                if (c.accept("elseif")) {
-                    asked = condition(c);
-                    c.accept("then");
-                    s.branches.emplace_back(asked, block(c, depth + 1));
-                } else if (c.accept("else")) {
-                    s.branches.emplace_back(nullptr, block(c, depth + 1));
-                } else {
-                    c.accept("endif");
-                    return s;
-                }
-            }
-        }
-        if (shallow && c.accept("for")) {
-            s.kind = Statement::Kind::count;
-            s.variable = c.done() ? "" : c.take().text;
-            c.accept("from");
-            s.from = condition(c);
-            c.accept("to");
-            s.to = condition(c);
-            if (c.accept("step")) s.step = condition(c);
-            c.accept("do");
-            s.branches.emplace_back(nullptr, block(c, depth + 1));
-            c.accept("endfor");
-            return s;
-        }
-        if (shallow && c.accept("while")) {
-            s.kind = Statement::Kind::loop;
-            auto asked = condition(c);
-            c.accept("do");
-            s.branches.emplace_back(asked, block(c, depth + 1));
-            c.accept("endwhile");
-            return s;
-        }
-        if (shallow && c.accept("test")) {
-            s.kind = Statement::Kind::branch;
-            const auto what = condition(c);
-            for (;;) {
-                if (c.accept("case")) {
-                    ExprPtr any;
-                    int cases = 0;
-                    do {
-                        auto same = std::make_shared<Expr>();
-                        same->kind = Expr::Kind::binary;
-                        same->text = "=";
-                        same->parts = {{{}, what}, {{}, condition(c)}};
-                        if (!any || ++cases > 60) {
-                            any = same;
-                            continue;
-                        }
-                        auto either = std::make_shared<Expr>();
-                        either->kind = Expr::Kind::binary;
-                        either->text = "or";
-                        either->parts = {{{}, any}, {{}, same}};
-                        any = either;
-                    } while (c.accept(","));
-                    c.accept(":");
-                    s.branches.emplace_back(any, block(c, depth + 1));
-                } else if (c.accept("default")) {
-                    c.accept(":");
-                    s.branches.emplace_back(nullptr, block(c, depth + 1));
-                } else {
-                    c.accept("endtest");
-                    return s;
-                }
-            }
-        }
-        return one(c);
-    }
-
-    void routine(Cursor& c) {
-        Routine r;
-        r.file = file_;
-        const int line = c.peek().line;
-        note(file_, line, LineKind::understood);
-        const std::string kind = c.take().text;
-        const std::string end = "end" + kind;
-        if (kind == "func" && !c.done()) c.take();
-        if (!c.done()) r.name = c.take().text;
-        if (c.accept("(")) {
-            while (!c.done() && !c.accept(")")) {
-                const bool optional = c.accept("\\");
-                std::string last;
-                while (!c.done() && !c.is(",") && !c.is(")") && !c.is("|") && !c.is("\\")) {
-                    if (c.accept("{")) {
-                        while (!c.done() && !c.accept("}")) c.take();
-                        continue;
-                    }
-                    last = c.take().text;
-                }
-                if (!optional && !last.empty()) r.parameters.push_back(last);
-                if (!c.accept(",")) c.accept("|");
-            }
-        }
-        while (!c.done() && !c.is(end) && !c.is("endmodule")) {
-            const std::size_t before = c.at();
-            if (c.is("error") || c.is("undo") || c.is("backward")) {  // handlers run when something failed
-                while (!c.done() && !c.is(end) && !c.is("endmodule")) c.take();
-                break;
-            }
-            for (Statement& s : block(c, 0)) r.body.push_back(std::move(s));
-            if (c.at() == before)
-                c.take();  // a closing word of nothing
-            else if (closes(c) && !c.is(end) && !c.is("error") && !c.is("undo") && !c.is("backward") &&
-                     !c.is("endmodule"))
-                c.take();
-        }
-        if (!c.done() && c.is(end)) {
-            note(file_, c.peek().line, LineKind::understood);
-            c.take();
-        }
-        if (r.name.empty() || kind == "func" || kind == "trap" || routines_.count(r.name) > 0) return;
-        routine_order_.push_back(r.name);
-        routines_[r.name] = std::move(r);
-    }
-
-    Flow instruction_call(const std::string& name, const std::vector<Argument>& arguments) {
-        if (name == "pdispset" && arguments.size() == 1 && arguments[0].value) {
-            const Value v = value_of(*arguments[0].value);
-            displaced_ = true;
-            displacement_ = in_doubt() ? std::nullopt : pose_at(v);
-            note(LineKind::understood);
-        } else if (name == "pdispoff") {
-            displaced_ = in_doubt();
-            displacement_.reset();
-            note(LineKind::understood);
-        } else if (name == "pdispon") {
-            displaced_ = true;
-            displacement_.reset();
-            note(LineKind::understood);
-        } else {
-            Flow flow = Flow::on;
-            if (enter(name, arguments, flow)) {
-                note(LineKind::understood);
-                return flow;
-            }
-            static const std::set<std::string> idle = {
-                "confl",   "confj",     "singarea", "accset",   "velset",       "waittime", "waitdi",
-                "waitdo",  "waituntil", "setdo",    "set",      "reset",        "setgo",    "setao",
-                "pulsedo", "tpwrite",   "tperase",  "gripload", "speedrefresh", "triggio",  "triggequip",
-                "waitrob", "clkstart",  "clkstop",  "clkreset", "isignaldi",    "idelete",  "incr",
-                "decr",    "add",       "clear",    "motsup",   "pathaccset",   "acttool",  "isleep",
-                "iwatch",  "setdi",     "errwrite"};
-            if (idle.count(name) > 0)
-                note(LineKind::passed_over);
-            else
-                note(LineKind::passed_over, Text("{} is not in the files that were read", name));
-        }
+        motion(*how, read_arguments(c, Dialect::rapid, ""));
         return Flow::on;
     }
-
-    // base_from_frame of a work object; nullopt: it moves with the robot or a positioner, or is not known.
-    std::optional<Pose> frame_of(const Value& wobj) const {
-        if (wobj.kind != Value::Kind::list || wobj.parts.size() < 5) return {};
-        if (truth_at(wobj, 0) != false || truth_at(wobj, 1) != true) return {};
-        const auto user = pose_at(wobj.parts[3]), object = pose_at(wobj.parts[4]);
-        return user && object ? std::optional(*user * *object) : std::nullopt;
+    if (word == "return") {
+        note(LineKind::understood);
+        return Flow::back;
     }
+    if (word == "exit" || word == "exitcycle" || word == "stop" || word == "break" || word == "raise" ||
+        word == "trynext" || word == "retry" || word == "connect" || word == "alias") {
+        note(LineKind::passed_over);
+        return word == "exit" ? Flow::back : Flow::on;
+    }
+    if (word == "goto") {
+        note(LineKind::not_understood, "jumps are not followed");
+        return Flow::on;
+    }
+    if (declares(c)) {
+        declaration(c);
+        return Flow::on;
+    }
+    if (s.tokens.size() == 2 && c.is(":", 1)) {  // a label
+        note(LineKind::understood);
+        return Flow::on;
+    }
+    if (c.is("%")) {
+        note(LineKind::passed_over, "a routine whose name the program makes while it runs");
+        return Flow::on;
+    }
+    const std::size_t from = c.at();
+    const auto place = read_expression(c, Dialect::rapid);
+    if (c.accept(":=")) {
+        assign(*place, value_of(*read_expression(c, Dialect::rapid)));
+        note(LineKind::understood);
+        return Flow::on;
+    }
+    c.go_to(from);
+    const std::string name = c.name();
+    return instruction_call(name, read_arguments(c, Dialect::rapid, ""));
+}
 
-    void motion(const Instruction& how, const std::vector<Argument>& arguments) {
-        std::vector<const Argument*> places;
-        const Argument* wobj = nullptr;
-        bool relative = false;
-        for (const Argument& a : arguments) {
-            if (!a.optional)
-                places.push_back(&a);
-            else if (a.name == "wobj")
-                wobj = &a;
-            else if (a.name == "corr")
-                relative = true;
+Value Rapid::call(const Expr& e) {
+    std::vector<Value> a;
+    std::map<std::string, double> options;
+    for (const Argument& part : e.parts) {
+        const Value v = part.value ? value_of(*part.value) : Value{};
+        if (!part.optional) a.push_back(v);
+        if (const auto n = v.as_number(); part.optional && n) options[part.name] = *n;
+        if (part.optional && part.value && !v.as_number()) return Value::unknown(v.text);
+    }
+    const auto number = [&](std::size_t i) { return i < a.size() ? a[i].as_number() : std::nullopt; };
+    const auto unknown = [&] {
+        for (const Value& v : a)
+            if (!v.known() && !v.text.empty()) return Value::unknown(v.text);
+        return Value::unknown(shown(e));
+    };
+    if ((e.text == "offs" || e.text == "reltool") && a.size() == 4) {
+        const auto target = pose_at(a[0]);
+        const auto x = number(1), y = number(2), z = number(3);
+        if (!target || !x || !y || !z) return unknown();
+        Pose moved = *target;
+        if (e.text == "offs") {
+            moved.translation() += Eigen::Vector3d(*x, *y, *z);
+        } else {  // displaced, then turned about x, y, z of the tool as it then stands
+            const Eigen::Matrix3d turn =
+                (Eigen::AngleAxisd(rad_from_deg(options["rx"]), Eigen::Vector3d::UnitX()) *
+                 Eigen::AngleAxisd(rad_from_deg(options["ry"]), Eigen::Vector3d::UnitY()) *
+                 Eigen::AngleAxisd(rad_from_deg(options["rz"]), Eigen::Vector3d::UnitZ()))
+                    .toRotationMatrix();
+            moved = *target * make_pose(turn, {*x, *y, *z});
         }
-        // SearchL \Stop, signal, SearchPoint, ToPoint
-        if (how.search) return gap("a search moves until the cell stops it");
-        if (how.only_external) return gap("external axes alone move here");
-        if (relative) return gap("a path correction from elsewhere is added here");
-        const std::size_t count = how.motion == ProgramMotion::circular ? 2 : 1;
-        if (places.size() < count + 1) throw Misread("too few arguments");
-        // The tool stands last.
-        const Expr& tool = *places.back()->value;
-        tool_ = shown(tool);
-        const Value tool_data = value_of(tool);
-        if (tool_data.text != tool_ && !tool_data.known() && !tool_data.text.empty()) tool_ = tool_data.text;
-        fixed_tool_ = truth_at(tool_data, 0) == false;
-        if (how.absolute) return joint_values();
-        NamedPose frame{"", Pose::Identity()};
-        if (wobj && wobj->value) {
-            const Value data = value_of(*wobj->value);
-            frame.name = data.known() || data.text.empty() ? shown(*wobj->value) : data.text;
-            frame.pose = data.known() ? frame_of(data) : std::nullopt;
-            if (truth_at(data, 0) == true) fixed_tool_ = true;
-            if (data.known() && truth_at(data, 1) == false)
-                return gap(Text("{} moves with a positioner", frame.name));
-            if (frame.name == "wobj0") frame.name.clear();
+        Value v = a[0];
+        const Value pose = rapid_pose_value(moved);
+        v.parts[0] = pose.parts[0];
+        v.parts[1] = pose.parts[1];
+        return v;
+    }
+    if (e.text == "posemult" && a.size() == 2) {
+        const auto p = pose_at(a[0]), q = pose_at(a[1]);
+        return p && q ? rapid_pose_value(*p * *q) : unknown();
+    }
+    if (e.text == "poseinv" && a.size() == 1) {
+        const auto p = pose_at(a[0]);
+        return p ? rapid_pose_value(p->inverse()) : unknown();
+    }
+    if (e.text == "posevect" && a.size() == 2) {
+        const auto p = pose_at(a[0]);
+        const auto v = vector_of(a[1]);
+        if (!p || !v) return unknown();
+        const Eigen::Vector3d r = *p * *v;
+        return Value::numbers({r.x(), r.y(), r.z()});
+    }
+    if (e.text == "orientzyx" && a.size() == 3) {
+        const auto z = number(0), y = number(1), x = number(2);
+        if (!x || !y || !z) return unknown();
+        const AbbQuaternion q = abb_from_rotation(rotation_from_kuka({*z, *y, *x}));
+        return Value::numbers({q.w, q.x, q.y, q.z});
+    }
+    if (e.text == "dim" && a.size() == 2 && a[0].kind == Value::Kind::list && number(1) == 1.0)
+        return Value::of(static_cast<double>(a[0].parts.size()));
+    if (const auto x = number(0); x && a.size() == 1) {
+        if (e.text == "sin") return Value::of(std::sin(rad_from_deg(*x)));
+        if (e.text == "cos") return Value::of(std::cos(rad_from_deg(*x)));
+        if (e.text == "tan") return Value::of(std::tan(rad_from_deg(*x)));
+        if (e.text == "abs") return Value::of(std::abs(*x));
+        if (e.text == "sqrt" && *x >= 0) return Value::of(std::sqrt(*x));
+        if (e.text == "trunc" && options.empty()) return Value::of(std::trunc(*x));
+        if (e.text == "round" && options.empty()) return Value::of(std::round(*x));
+    }
+    if (const auto x = number(0), y = number(1); x && y && e.text == "pow")
+        return Value::of(std::pow(*x, *y));
+    return unknown();
+}
+
+bool Rapid::declares(const Cursor& c) {
+    for (const std::size_t i : {0, 1}) {
+        if (c.is("const", i) || c.is("pers", i) || c.is("var", i))
+            return i == 0 || c.is("local") || c.is("task");
+    }
+    return false;
+}
+
+void Rapid::declaration(Cursor& c) {
+    const bool local = c.accept("local");
+    if (!local) c.accept("task");
+    c.take();
+    const std::string type = c.name();
+    const std::string name = c.name();
+    if (c.accept("{")) read_arguments(c, Dialect::rapid, "}");
+    Value value = Value::unknown(name);
+    if (c.accept(":=")) value = value_of(*read_expression(c, Dialect::rapid));
+    if (value.known() || !variable(name)) declare(name, std::move(value), true);
+    note(LineKind::understood);
+}
+
+Machine::Flow Rapid::instruction_call(const std::string& name, const std::vector<Argument>& arguments) {
+    if (name == "pdispset" && arguments.size() == 1 && arguments[0].value) {
+        const Value v = value_of(*arguments[0].value);
+        displaced_ = true;
+        displacement_ = in_doubt() ? std::nullopt : pose_at(v);
+        note(LineKind::understood);
+    } else if (name == "pdispoff") {
+        displaced_ = in_doubt();
+        displacement_.reset();
+        note(LineKind::understood);
+    } else if (name == "pdispon") {
+        displaced_ = true;
+        displacement_.reset();
+        note(LineKind::understood);
+    } else {
+        Flow flow = Flow::on;
+        if (enter(name, arguments, flow)) {
+            note(LineKind::understood);
+            return flow;
         }
-        set_frame(std::move(frame));
-        std::vector<Pose> poses;
-        for (std::size_t i = 0; i < count; ++i) {
-            if (!places[i]->value) throw Misread("a position is missing");
-            const Value v = value_of(*places[i]->value);
-            const auto pose = pose_at(v);
-            if (!pose)
-                return gap(
-                    Text("{} is not known from the program", v.known() ? shown(*places[i]->value) : v.text));
-            if (displaced_ && !displacement_)
-                return gap("a displacement acts here that the program does not say");
-            poses.push_back(displaced_ ? *displacement_ * *pose : *pose);
-        }
-        const auto& target = places[count - 1]->value;
-        const std::string name = target->kind == Expr::Kind::list ? std::string() : shown(*target);
-        if (how.motion == ProgramMotion::circular)
-            arc(poses[0], poses[1], name);
+        static const std::set<std::string> idle = {
+            "confl",   "confj",     "singarea", "accset",   "velset",       "waittime", "waitdi",
+            "waitdo",  "waituntil", "setdo",    "set",      "reset",        "setgo",    "setao",
+            "pulsedo", "tpwrite",   "tperase",  "gripload", "speedrefresh", "triggio",  "triggequip",
+            "waitrob", "clkstart",  "clkstop",  "clkreset", "isignaldi",    "idelete",  "incr",
+            "decr",    "add",       "clear",    "motsup",   "pathaccset",   "acttool",  "isleep",
+            "iwatch",  "setdi",     "errwrite"};
+        if (idle.count(name) > 0)
+            note(LineKind::passed_over);
         else
-            move(poses[0], how.motion, name);
+            note(LineKind::passed_over, Text("{} is not in the files that were read", name));
     }
+    return Flow::on;
+}
 
-    std::vector<Token> tokens_;
-    int file_ = 0;
-    bool displaced_ = false;
-    std::optional<Pose> displacement_;
-};
+std::optional<Pose> Rapid::frame_of(const Value& wobj) const {
+    if (wobj.kind != Value::Kind::list || wobj.parts.size() < 5) return {};
+    if (truth_at(wobj, 0) != false || truth_at(wobj, 1) != true) return {};
+    const auto user = pose_at(wobj.parts[3]), object = pose_at(wobj.parts[4]);
+    return user && object ? std::optional(*user * *object) : std::nullopt;
+}
 
-}  // namespace
+void Rapid::motion(const Instruction& how, const std::vector<Argument>& arguments) {
+    std::vector<const Argument*> places;
+    const Argument* wobj = nullptr;
+    bool relative = false;
+    for (const Argument& a : arguments) {
+        if (!a.optional)
+            places.push_back(&a);
+        else if (a.name == "wobj")
+            wobj = &a;
+        else if (a.name == "corr")
+            relative = true;
+    }
+    // SearchL \Stop, signal, SearchPoint, ToPoint
+    if (how.search) return gap("a search moves until the cell stops it");
+    if (how.only_external) return gap("external axes alone move here");
+    if (relative) return gap("a path correction from elsewhere is added here");
+    const std::size_t count = how.motion == ProgramMotion::circular ? 2 : 1;
+    if (places.size() < count + 1) throw Misread("too few arguments");
+    // The tool stands last.
+    const Expr& tool = *places.back()->value;
+    tool_ = shown(tool);
+    const Value tool_data = value_of(tool);
+    if (tool_data.text != tool_ && !tool_data.known() && !tool_data.text.empty()) tool_ = tool_data.text;
+    fixed_tool_ = truth_at(tool_data, 0) == false;
+    if (how.absolute) return joint_values();
+    NamedPose frame{"", Pose::Identity()};
+    if (wobj && wobj->value) {
+        const Value data = value_of(*wobj->value);
+        frame.name = data.known() || data.text.empty() ? shown(*wobj->value) : data.text;
+        frame.pose = data.known() ? frame_of(data) : std::nullopt;
+        if (truth_at(data, 0) == true) fixed_tool_ = true;
+        if (data.known() && truth_at(data, 1) == false)
+            return gap(Text("{} moves with a positioner", frame.name));
+        if (frame.name == "wobj0") frame.name.clear();
+    }
+    set_frame(std::move(frame));
+    std::vector<Pose> poses;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!places[i]->value) throw Misread("a position is missing");
+        const Value v = value_of(*places[i]->value);
+        const auto pose = pose_at(v);
+        if (!pose)
+            return gap(
+                Text("{} is not known from the program", v.known() ? shown(*places[i]->value) : v.text));
+        if (displaced_ && !displacement_)
+            return gap("a displacement acts here that the program does not say");
+        poses.push_back(displaced_ ? *displacement_ * *pose : *pose);
+    }
+    const auto& target = places[count - 1]->value;
+    const std::string name = target->kind == Expr::Kind::list ? std::string() : shown(*target);
+    if (how.motion == ProgramMotion::circular)
+        arc(poses[0], poses[1], name);
+    else
+        move(poses[0], how.motion, name);
+}
 
 std::unique_ptr<Machine> rapid_machine(const ProgramPathOptions& options) {
     return std::make_unique<Rapid>(options);

@@ -14,6 +14,7 @@
 #include "core/calibration/sphere/tcp_sphere_advice.h"
 #include "core/calibration/sphere/tcp_sphere_settle.h"
 #include "core/calibration/sphere/tcp_sphere_solve.h"
+#include "core/calibration/sphere/tcp_sphere_start.h"
 #include "core/calibration/statistics.h"
 #include "core/median.h"
 #include "core/numbers.h"

@@ -19,6 +19,9 @@ using Vector10 = Eigen::Matrix<double, 10, 1>;
 using Matrix10 = Eigen::Matrix<double, 10, 10>;
 using Matrix3x10 = Eigen::Matrix<double, 3, 10>;
 
+// A floor under scales and pivots, relative to a unit diagonal: directions without any information stay still.
+inline constexpr double kFloor = 1e-12;
+
 struct Model {
     Pose flange_from_sensor = Pose::Identity();
     Eigen::Vector3d centre_base = Eigen::Vector3d::Zero();
@@ -56,15 +59,6 @@ Model retracted(const Model& model, const Vector10& delta);
 // |root (v - best)|^2: by how much the profile disagrees with the model beyond its own noise, mm^2 summed
 // over points.
 double disagreement(const Section& section, const Model& model);
-
-struct Start {
-    Model model;
-    double cost = 0;  // robust, mm^2 per profile
-};
-// Different minima of the reduced problem over all starts, best first (at most four). `radius_free` lets r
-// move. `subsets`: where profiles contradict the best, small subsets are searched too.
-std::vector<Start> global_start(const std::vector<Section>& sections, double radius, bool radius_free,
-                                bool subsets);
 
 // Two stages of the noise: of the points within a profile, and of the profiles' centres against the common
 // sphere, as an isotropic error of s_i (that is what an error of the robot's pose is).

@@ -1,0 +1,47 @@
+#pragma once
+// The profiles of a pass registered to one of them: the inside of check_alignment (not for others).
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/alignment/alignment.h"
+#include "core/features/registration/registration.h"
+
+namespace seamwright::alignment {
+
+inline constexpr int kFewestProfiles = 5;
+
+struct Registered {
+    Eigen::Vector2d shift = Eigen::Vector2d::Zero();
+    double phi = 0, rms = 0, share = 0;
+    Eigen::Vector2d slides = Eigen::Vector2d::Zero();  // direction, zero when the profile has a shape
+    bool ok = false;
+};
+
+// A profile as the one that the others are registered to.
+struct Reference {
+    std::size_t index = 0;
+    ContourMatcher matcher;
+    std::vector<Registered> found;
+    double quality = 0;  // profiles that register, by the share that they show; half for those that slide
+    bool good = false;   // most do, and with most of the contour
+};
+
+// Of the usable points.
+Eigen::Vector2d centroid(const Profile& p);
+
+// The nearest to travel 0 that has about as many points and about as little noise as the pass usually shows,
+// and to which most of the pass registers. Where none is good, the best of a few.
+std::optional<Reference> choose_reference(std::span<const TravelProfile> pass,
+                                          const std::vector<std::size_t>& order,
+                                          const std::optional<Eigen::Vector2d>& point);
+
+// How much a piece of the contour grows or sinks against the rest within the jitter, beyond its noise: the
+// largest over the pieces.
+double growth_mm(const Reference& reference, std::span<const TravelProfile> pass,
+                 const Eigen::Vector2d& point, double jitter_mm);
+
+}  // namespace seamwright::alignment

@@ -52,9 +52,8 @@ Expected<RecordingLook> look_at_recording(const fs::path& source, const Recordin
     if (!frames) {  // poses may be what is missing
         look.problem = frames.error().sentence();
         const Error first = frames.error();
-        RecordingLayout without = layout;
         look.understood.clear();
-        frames = list_recording(path, "", false, without, &look.understood);
+        frames = list_recording(path, "", false, layout, &look.understood);
         if (!frames) return tl::unexpected(first);
     }
     look.frames = frames->size();

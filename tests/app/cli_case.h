@@ -18,6 +18,7 @@ class CliCase : public testing::Test {
     ~CliCase() override { std::filesystem::remove_all(folder); }
 
     std::string write(const std::string& name, const std::string& text) {
+        std::filesystem::create_directories((folder / name).parent_path());
         std::ofstream(folder / name, std::ios::binary) << text;
         return (folder / name).string();
     }

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "core/geometry/pose.h"
-#include "tests/app/run_program.h"
+#include "tests/app/cli_case.h"
 
 namespace seamwright {
 
@@ -69,31 +69,10 @@ struct ForeignCell {
 };
 inline const Pose kMoved = make_pose(rotation_exp({0.002, -0.001, 0.003}), {1.5, -2, 1});
 
-class Import : public testing::Test {
+class Import : public CliCase {
   protected:
-    std::filesystem::path folder = test_folder("import");
     ForeignCell cell;
-    ~Import() override { std::filesystem::remove_all(folder); }
 
-    std::string write(const std::string& name, const std::string& text) {
-        std::filesystem::create_directories((folder / name).parent_path());
-        std::ofstream(folder / name, std::ios::binary) << text;
-        return (folder / name).string();
-    }
-    ProgramResult run(const std::vector<std::string>& arguments) { return run_program(arguments, folder); }
-    nlohmann::json answer(std::vector<std::string> arguments, int exit_code) {
-        arguments.insert(arguments.end(), {"--json", "-"});
-        const ProgramResult r = run(arguments);
-        EXPECT_EQ(r.exit_code, exit_code) << r.err << r.out;
-        return nlohmann::json::parse(r.out, nullptr, false);
-    }
-    void refused(const std::vector<std::string>& arguments, const std::string& words) {
-        const ProgramResult r = run(arguments);
-        EXPECT_EQ(r.exit_code, 2) << r.err << r.out;
-        EXPECT_THAT(r.err, testing::HasSubstr(words));
-        EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
-        EXPECT_EQ(r.out, "");
-    }
     std::string pose_text(const Pose& p) const {
         nlohmann::json m = nlohmann::json::array();
         for (int r = 0; r < 4; ++r)

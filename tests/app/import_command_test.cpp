@@ -30,8 +30,8 @@ TEST_F(Import, ForeignLayoutsInOneCommandEach) {
     // Bare tabs in micrometres, six numbers by order.
     record([](const auto& p) { return rows_of(p, "\t", 1e3); }, ".txt");
     poses("poses.txt", pose_rows("", " ", false, xyz_wpr));
-    refused(edge_job("b", {"--unit", "um"}), "--pose-convention");
-    refused(edge_job("b", {"--pose-convention", "fanuc-wpr"}), "--unit");
+    expect_refused(edge_job("b", {"--unit", "um"}), "--pose-convention");
+    expect_refused(edge_job("b", {"--pose-convention", "fanuc-wpr"}), "--unit");
     EXPECT_EQ(answer(edge_job("b", {"--unit", "um", "--pose-convention", "fanuc-wpr"}), 0)["spots"], 8);
     expect_motion("b", 0.1);
     clear(folder);
@@ -41,8 +41,8 @@ TEST_F(Import, ForeignLayoutsInOneCommandEach) {
               const Eigen::Vector3d t = p.translation() / 1000, w = rotation_log(p.linear());
               return std::vector<double>{t.x(), t.y(), t.z(), w.x(), w.y(), w.z()};
           }));
-    refused(edge_job("c", {"--pose-convention", "ur-rotvec", "--pose-unit", "m"}), "inches");
-    refused(edge_job("c", {"--unit", "in", "--pose-convention", "ur-rotvec"}), "--pose-unit");
+    expect_refused(edge_job("c", {"--pose-convention", "ur-rotvec", "--pose-unit", "m"}), "inches");
+    expect_refused(edge_job("c", {"--unit", "in", "--pose-convention", "ur-rotvec"}), "--pose-unit");
     EXPECT_EQ(answer(edge_job("c", {"--unit", "in", "--pose-convention", "ur-rotvec", "--pose-unit", "m"}),
                      0)["spots"],
               8);
@@ -169,7 +169,7 @@ TEST_F(Import, WhatStandsForNoReturnIsNoHeight) {
 TEST_F(Import, TheFirstErrorNamesFileAndLine) {
     record([](const auto& p) { return "x;z\n" + rows_of(p, ";") + "1.5;abc\n"; }, ".csv");
     poses("poses.csv", pose_rows("name,x,y,z,w,p,r\n", ",", true, xyz_wpr));
-    refused(edge_job("a", {}), "scan_1.csv, line 253");
+    expect_refused(edge_job("a", {}), "scan_1.csv, line 253");
     EXPECT_EQ(
         run({"import", (folder / "a.seam").string(), "--from", (folder / "nowhere.csv").string()}).exit_code,
         3);
@@ -214,9 +214,9 @@ TEST_F(Import, TemplatesAreTaughtFromTheMaster) {
         EXPECT_EQ(answer(job("t", a), 0)["spots"], 8);
         expect_motion("t", 0.1);
     }
-    refused(job("t", {"--kind", "template", "--piece", "500,600", "--flange-from-sensor", flange}),
-            "--piece");
-    refused(edge_job("t", {"--piece", "-16,-1"}), "template");
+    expect_refused(job("t", {"--kind", "template", "--piece", "500,600", "--flange-from-sensor", flange}),
+                   "--piece");
+    expect_refused(edge_job("t", {"--piece", "-16,-1"}), "template");
 }
 
 // Spots as of an ordinary door with the defaults of import: the run is not refused for its sigma.
@@ -226,8 +226,8 @@ TEST_F(Import, DefaultSigmaAndLimitFitTogether) {
     const json made = answer(edge_job("door", {}), 0);
     EXPECT_THAT(made["notes"].dump(), HasSubstr("expected of a correction"));
     answer({"run", (folder / "door.seam").string()}, 0);
-    refused(edge_job("door", {"--sigma-mm", "0"}), "sigma");
-    refused(edge_job("door", {"--sigma-limit-mm", "-1"}), "sigma");
+    expect_refused(edge_job("door", {"--sigma-mm", "0"}), "sigma");
+    expect_refused(edge_job("door", {"--sigma-limit-mm", "-1"}), "sigma");
 }
 
 TEST_F(Import, EveryCalibrationSolvesItsOwnExample) {
@@ -238,7 +238,7 @@ TEST_F(Import, EveryCalibrationSolvesItsOwnExample) {
         const json solved = answer({"calibrate", method, file}, 0);
         EXPECT_THAT(solved["verdict"].get<std::string>(), testing::AnyOf("good", "usable")) << method;
         EXPECT_THAT(run({"calibrate", method, "--help"}).out, HasSubstr("Layout of DATA.json")) << method;
-        refused({"calibrate", method}, "--example");
+        expect_refused({"calibrate", method}, "--example");
     }
     const ProgramResult fixed = run({"calibrate", "camera", (folder / "camera.json").string()});
     EXPECT_THAT(fixed.out, testing::Not(HasSubstr("± 0 ")));

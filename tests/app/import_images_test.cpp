@@ -77,18 +77,18 @@ TEST_F(Import, ImagesBecomeMillimetresByAStoredCalibrationAndPixelsAreNotRetaugh
         answer({"calibrate", "stripe-camera", example, "--store", pixels, "--sensor", "A"}, 0);
     const std::string id = stored["stored_as"];
     const json before = answer({"info", pixels}, 0)["project"];
-    refused({"reteach", pixels, "--sensor", "A", "--calibration", id}, "taught in pixels");
+    expect_refused({"reteach", pixels, "--sensor", "A", "--calibration", id}, "taught in pixels");
     EXPECT_EQ(answer({"info", pixels}, 0)["project"], before);
     // It is offered for the import, and refused for images of another camera.
-    refused(job("no", {"--calibration", pixels, "--set", "side=right"}), "1280 x 1024");
-    refused(job("no", {"--calibration", pixels, "--calibration-id", "none"}), id);
-    refused(job("no", {"--calibration", pixels, "--calibration-id", "import"}), "pixels");
+    expect_refused(job("no", {"--calibration", pixels, "--set", "side=right"}), "1280 x 1024");
+    expect_refused(job("no", {"--calibration", pixels, "--calibration-id", "none"}), id);
+    expect_refused(job("no", {"--calibration", pixels, "--calibration-id", "import"}), "pixels");
     solved.erase("hand_eye");
     solved["hand_eye"] = nullptr;
     // Its laser plane alone does not say where the camera sits.
-    refused(job("no", {"--calibration", write("half.json", solved.dump()), "--set", "side=right"}),
-            "--flange-from-sensor");
-    refused(job("no", {"--calibration", write("text.json", "[1,2]")}), "text.json");
+    expect_refused(job("no", {"--calibration", write("half.json", solved.dump()), "--set", "side=right"}),
+                   "--flange-from-sensor");
+    expect_refused(job("no", {"--calibration", write("text.json", "[1,2]")}), "text.json");
 
     // A table of the same camera, as `calibrate lut` writes it.
     json pairs = json::array();
@@ -112,8 +112,8 @@ TEST_F(Import, ImagesBecomeMillimetresByAStoredCalibrationAndPixelsAreNotRetaugh
                      0)["in_pixels"],
               false);
     expect_motion("table", 0.4);
-    refused(job("no", {"--calibration", table, "--set", "side=right"}), "--flange-from-sensor");
-    refused(job("no", {"--calibration", write("text.lut", "no table")}), "text.lut");
+    expect_refused(job("no", {"--calibration", table, "--set", "side=right"}), "--flange-from-sensor");
+    expect_refused(job("no", {"--calibration", write("text.lut", "no table")}), "text.lut");
 }
 
 // A red line on a colour camera under white light, beside a bright white reflection.
@@ -160,8 +160,9 @@ TEST_F(Import, TheLaserIsReadInItsColour) {
     EXPECT_THAT(r["warnings"].dump(), HasSubstr("folded to grey"));
     r = answer({"extract", on, "--columns", "--channel", "grey", "--laser-off", off, "--out", out}, 0);
     EXPECT_GE(right(), 0.99);
-    refused({"extract", on, "--laser-off", write("small.ppm", "P6\n2 2\n255\nabcabcabcabc"), "--out", out},
-            "no pair");
+    expect_refused(
+        {"extract", on, "--laser-off", write("small.ppm", "P6\n2 2\n255\nabcabcabcabc"), "--out", out},
+        "no pair");
     EXPECT_EQ(run({"extract", on, "--channel", "infrared", "--out", out}).exit_code, 2);
 }
 

@@ -79,9 +79,10 @@ bool even(std::span<const double> x, std::vector<double>& scratch) {
 // The noise of points three lines apart over that of neighbours: what a linear interpolation from points 0.7, 0.85, 1,
 // 1.3, 1.6 and 2 lines apart makes of independent noise is 1.1, 1.2, 1.5, 2.5, 3.5 and 5.6.
 constexpr std::size_t kNoiseApart = 3;
-constexpr double kNoNoise = 1e-3;    // steps: less is rounding and shape
-constexpr double kRunsByChance = 6;  // over sqrt(points): three sigma of that quotient
-constexpr double kRunsSeen = 0.1;
+constexpr double kNoNoise = 1e-3;       // steps: less is rounding and shape
+constexpr double kRunsByCorners = 1.2;  // thirteen points see a corner, five as neighbours
+constexpr double kRunsByChance = 6;     // over sqrt(points): three sigma of that quotient
+constexpr double kRunsSeen = 0.1;       // above that it counts whole
 constexpr double kMeasuredApart = 0.75, kMeasuredRise = 0.65;
 
 }  // namespace
@@ -89,15 +90,15 @@ constexpr double kMeasuredApart = 0.75, kMeasuredRise = 0.65;
 ContourNoise contour_noise(std::span<const double> x, std::span<const double> z,
                            std::vector<double>& scratch) {
     ContourNoise noise;
-    noise.point_mm = noise.neighbours_mm = difference_noise_mm(x, z, scratch, 1);
-    if (!(noise.neighbours_mm > 0) || !even(x, scratch)) return noise;
+    noise.point_mm = difference_noise_mm(x, z, scratch, 1);
+    if (!(noise.point_mm > 0) || !even(x, scratch)) return noise;
     const double step = std::abs(x.back() - x.front()) / double(x.size() - 1);
-    const double apart = difference_noise_mm(x, z, scratch, kNoiseApart);
-    const double runs = apart / noise.neighbours_mm, chance = kRunsByChance / std::sqrt(double(x.size()));
-    const double seen = std::clamp((runs - 1 - chance) / kRunsSeen, 0.0, 1.0);
-    if (apart < kNoNoise * step || seen == 0) return noise;
-    noise.point_mm = apart;
+    const double apart = difference_noise_mm(x, z, scratch, kNoiseApart), runs = apart / noise.point_mm;
+    const double least = kRunsByCorners + kRunsByChance / std::sqrt(double(x.size()));
+    if (apart < kNoNoise * step || runs < least) return noise;
+    const double seen = std::min((runs - least) / kRunsSeen, 1.0);
     noise.measured_apart = seen * (kMeasuredApart + kMeasuredRise * std::log(runs));
+    noise.point_mm = apart;
     return noise;
 }
 

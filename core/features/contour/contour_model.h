@@ -29,9 +29,8 @@ namespace seamwright {
 // neighbours hide their noise: there it is taken from points three lines apart.
 struct ContourNoise {
     double point_mm = 0;
-    double neighbours_mm = 0;  // as neighbours have it
-    double measured_apart =
-        0;  // lines of the grid between points that were measured; 0: nothing says that they were others
+    // Of the points that were measured, in lines of the grid; 0: nothing says that they were others than these.
+    double measured_apart = 0;
 };
 ContourNoise contour_noise(std::span<const double> x, std::span<const double> z,
                            std::vector<double>& scratch);

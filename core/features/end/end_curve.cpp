@@ -14,12 +14,12 @@ constexpr double kEndGate = 3.5;  // sigma
 constexpr double kEndSmallest_mm = 1e-9;
 constexpr std::size_t kEndFewestRounded = 6;  // points that know a curvature and their noise
 constexpr double kEndAkaike = 2;         // times its variance: a coefficient squared that is worth its noise
-constexpr double kEndPointsKept = 0.75;  // of the line's, for a parabola to be better
+constexpr double kEndPointsKept = 0.75;  // of the line's, for an arc to be better
 constexpr double kEndLeastVariance = 1e-300;  // of a curvature: divided by
 constexpr double kEndSingular = 1e-9;         // reciprocal condition
 constexpr double kEndMostTurned_rad = 1.5;    // over one sigma of the points' spread
-constexpr double kEndShortestStep = 0.01;
-constexpr double kEndSettled = 1e-9;
+constexpr double kEndShortestStep = 0.01;     // of Gauss and Newton's
+constexpr double kEndSettled = 1e-9;          // of the points' spread: a change of the bow
 
 EndCurve straight(const LineFit& line) {
     EndCurve curve;
@@ -95,7 +95,7 @@ bool EndFit::fit_arc(const LineFit& line, EndCurve& curve) {
     return true;
 }
 
-// The cubic part (s^3, free of the parabola's) of the kept points' residuals, without what noise alone
+// The cubic part (s^3, free of the arc's) of the kept points' residuals, without what noise alone
 // makes of it; as coefficients of 1, s, s^2, s^3.
 Eigen::Vector4d EndFit::cubic(const EndCurve& curve) const {
     const double size = std::sqrt(curve.spread_mm2 / curve.used);

@@ -33,7 +33,7 @@
 // What is systematic stays: where light grazes a rounded rim, returns stop before the silhouette, at the
 // teaching as at the measuring. On a fold of 1.15 mm radius that is 0.15 mm; it repeats within the
 // covariance. An arc of fewer than about eight points is not seen as one, nor an interpolation between points that are
-// closer than the grid's: there the end lies up to half a pitch farther out than stated, in the mean.
+// closer than the grid's: there the end lies up to half a pitch farther out than found, in the mean.
 //
 // Which end is meant: choose_end() (end_choice.h). Degenerate: a contour that runs on beyond the window,
 // leaves the sensor's field or runs under a higher one has no end there (not_found); a sheet shorter than

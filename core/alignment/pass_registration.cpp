@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/correction/contour_fit.h"
-#include "core/features/contour/contour_model.h"
+#include "core/features/contour/contour_noise.h"
 #include "core/median.h"
 
 namespace seamwright::alignment {

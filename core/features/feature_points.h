@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/features/contour/contour_model.h"
+#include "core/features/contour/contour_noise.h"
 #include "core/features/feature.h"
 
 namespace seamwright {
@@ -34,6 +35,8 @@ struct FeaturePoints {
     ContourPitch pitch;
 
     void gather(const Profile& profile, const FeatureWindow& window);
+    // Of the whole profile that was gathered last.
+    ProfileNoise noise() { return profile_noise(all_x_, all_z_, scratch_); }
 
   private:
     std::vector<double> all_x_, all_z_, scratch_;

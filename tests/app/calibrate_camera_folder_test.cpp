@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "projects/calibrate/methods/methods.h"
+#include "tests/devices/real_data.h"
 
 namespace seamwright {
 namespace {
@@ -13,11 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
-
-fs::path real_data() {
-    const char* given = std::getenv("SEAMWRIGHT_DATA");
-    return fs::path(given ? given : SEAMWRIGHT_DATA_DIR);
-}
 
 fs::path scratch(const std::string& name) {
     const fs::path p = fs::path(testing::TempDir()) / ("seamwright_plate_" + name);

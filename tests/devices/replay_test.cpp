@@ -11,6 +11,7 @@
 #include "devices/exchange/tables/profile_csv.h"
 #include "devices/registry.h"
 #include "devices/replay/recording.h"
+#include "tests/devices/real_data.h"
 #include "tests/devices/temporary_folder.h"
 
 namespace seamwright {

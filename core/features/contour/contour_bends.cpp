@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/features/contour/contour_model.h"
+#include "core/features/contour/contour_noise.h"
 
 namespace seamwright {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/features/contour/contour_noise.h"
 #include "core/median.h"
-#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
@@ -31,80 +31,7 @@ struct WindowSums {
           slope3((3 * double(m) * m - 7) / 20.0) {}
 };
 
-// Of points `apart` lines apart.
-double difference_noise_mm(std::span<const double> x, std::span<const double> z, std::vector<double>& scratch,
-                           std::size_t apart) {
-    // Where the noise is of the size of the pitch, the direction of a chord of four points is noise too: the
-    // chord is then taken as long as twelve sigma.
-    constexpr std::size_t kLongest = 96;
-    const std::size_t n = x.size();
-    const std::size_t one = apart, two = 2 * apart;
-    std::size_t reach = two;
-    double sigma = 0;
-    for (int pass = 0; pass < 3; ++pass) {
-        scratch.clear();
-        for (std::size_t i = two; i + two < n; ++i) {
-            const std::size_t a = i > reach ? i - reach : 0, b = std::min(i + reach, n - 1);
-            const double tx = x[b] - x[a], tz = z[b] - z[a];
-            const double length = std::hypot(tx, tz);
-            if (!(length > 0)) continue;
-            const double fx = x[i + two] - 4 * x[i + one] + 6 * x[i] - 4 * x[i - one] + x[i - two];
-            const double fz = z[i + two] - 4 * z[i + one] + 6 * z[i] - 4 * z[i - one] + z[i - two];
-            scratch.push_back(std::abs(fz * tx - fx * tz) / length);
-        }
-        if (scratch.size() < 8) return sigma;
-        sigma = kMadToSigma * median(scratch) / std::sqrt(70.0);
-        scratch.clear();
-        for (std::size_t i = 0; i + 2 * reach < n; ++i)
-            scratch.push_back(std::hypot(x[i + 2 * reach] - x[i], z[i + 2 * reach] - z[i]));
-        const double chord = median(scratch);
-        if (chord >= 12 * sigma || 2 * reach >= std::min(kLongest, n / 4)) break;
-        reach = std::min({static_cast<std::size_t>(std::ceil(12 * sigma / chord * double(reach))),
-                          kLongest / 2, std::max<std::size_t>(2, n / 8)});
-    }
-    return sigma;
-}
-
-// Steps of x that differ by no more than rounding, in the median: missing lines do not count.
-bool even(std::span<const double> x, std::vector<double>& scratch) {
-    constexpr double kRounding = 1e-4;  // of a step
-    scratch.clear();
-    for (std::size_t i = 2; i < x.size(); ++i) scratch.push_back(std::abs(x[i - 2] - 2 * x[i - 1] + x[i]));
-    const double uneven = median(scratch);
-    scratch.clear();
-    for (std::size_t i = 1; i < x.size(); ++i) scratch.push_back(std::abs(x[i] - x[i - 1]));
-    return uneven < kRounding * median(scratch);
-}
-
-// The noise of points three lines apart over that of neighbours: what a linear interpolation from points 0.7, 0.85, 1,
-// 1.3, 1.6 and 2 lines apart makes of independent noise is 1.1, 1.2, 1.5, 2.5, 3.5 and 5.6.
-constexpr std::size_t kNoiseApart = 3;
-constexpr double kNoNoise = 1e-3;       // steps: less is rounding and shape
-constexpr double kRunsByCorners = 1.2;  // thirteen points see a corner, five as neighbours
-constexpr double kRunsByChance = 6;     // over sqrt(points): three sigma of that quotient
-constexpr double kRunsSeen = 0.1;       // above that it counts whole
-constexpr double kMeasuredApart = 0.75, kMeasuredRise = 0.65;
-
 }  // namespace
-
-ContourNoise contour_noise(std::span<const double> x, std::span<const double> z,
-                           std::vector<double>& scratch) {
-    ContourNoise noise;
-    noise.point_mm = difference_noise_mm(x, z, scratch, 1);
-    if (!(noise.point_mm > 0) || !even(x, scratch)) return noise;
-    const double step = std::abs(x.back() - x.front()) / double(x.size() - 1);
-    const double apart = difference_noise_mm(x, z, scratch, kNoiseApart), runs = apart / noise.point_mm;
-    const double least = kRunsByCorners + kRunsByChance / std::sqrt(double(x.size()));
-    if (apart < kNoNoise * step || runs < least) return noise;
-    const double seen = std::min((runs - least) / kRunsSeen, 1.0);
-    noise.measured_apart = seen * (kMeasuredApart + kMeasuredRise * std::log(runs));
-    noise.point_mm = apart;
-    return noise;
-}
-
-double contour_noise_mm(std::span<const double> x, std::span<const double> z, std::vector<double>& scratch) {
-    return contour_noise(x, z, scratch).point_mm;
-}
 
 bool ContourPitch::is_wall(double dx, double dz) const {
     return std::hypot(dx, dz) > 5 * distance && std::abs(dx) <= 3.5 * along_x;

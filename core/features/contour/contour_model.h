@@ -22,20 +22,6 @@
 
 namespace seamwright {
 
-// Noise of a single point across the contour, 1 sigma, from fourth differences (1, -4, 6, -4, 1) / sqrt(70)
-// projected on the local normal: shape up to the third order cancels; the median makes it blind to corners
-// and outliers. 0 when fewer than 8 differences exist. `x`, `z` finite, in contour order.
-// A sensor may measure coarser than the even grid that it delivers. What it interpolated runs from line to line, so that
-// neighbours hide their noise: there it is taken from points three lines apart.
-struct ContourNoise {
-    double point_mm = 0;
-    // Of the points that were measured, in lines of the grid; 0: nothing says that they were others than these.
-    double measured_apart = 0;
-};
-ContourNoise contour_noise(std::span<const double> x, std::span<const double> z,
-                           std::vector<double>& scratch);
-double contour_noise_mm(std::span<const double> x, std::span<const double> z, std::vector<double>& scratch);
-
 // Gaps: where two neighbours are no neighbours on the surface.
 struct ContourPitch {
     double along_x = 0;   // median |dx| of neighbours

@@ -98,20 +98,22 @@ LineFit fit_line(std::span<const double> x, std::span<const double> z, LineWorks
     const Eigen::Vector2d sense(x[n - 1] - x[0], z[n - 1] - z[0]);
     if (line.direction.dot(sense) < 0) line.direction = -line.direction;
     double rss = 0;
+    workspace.sizes.clear();
     for (int i = 0; i < n; ++i)
         if (keep[i]) {
             const double d = line.distance({x[i], z[i]});
+            workspace.sizes.push_back(d);
             rss += d * d;
             const double s = line.direction.dot(Eigen::Vector2d(x[i], z[i]) - line.centre);
             line.first_mm = std::min(line.first_mm, s);
             line.last_mm = std::max(line.last_mm, s);
         }
     line.rms_mm = std::sqrt(rss / line.used);
-    line.sigma_mm = std::sqrt(rss / (line.used - 2));
-    // Few points know their own noise badly: errors over estimated sigma are Student's, wider than a
-    // Gaussian.
     const int freedom = line.used - 2;
-    line.widening = freedom > 4 ? double(freedom) / (freedom - 2) : 2.0;
+    const PooledSigma pooled = pooled_sigma(std::sqrt(rss / freedom), freedom, workspace.noise);
+    line.sigma_mm = pooled.sigma_mm;
+    line.widening = pooled.widening;
+    line.alike = alike_widening(workspace.sizes, 2, workspace.noise);
     line.ok = true;
     return line;
 }

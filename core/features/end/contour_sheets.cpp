@@ -8,18 +8,25 @@
 namespace seamwright {
 namespace {
 
+// Points as they were measured: what an interpolation has put in between does not count.
 constexpr int kHoleLines = 6;
 constexpr double kByChance = 1e-5;
 constexpr int kStepSide = 12, kStepShort = 6, kStepFewest = 4, kStepBetween = 2;
 constexpr double kStepSigma = 6;
 constexpr double kWorthLooking = 0.3;  // of kStepSigma: lower jumps are none
-constexpr double kGoesOn = 5;          // sigma
-constexpr double kCloseUp = 4;         // sigma
+constexpr double kInterpolatedApart =
+    2.0 / 3;                   // points so many lines apart, over ProfileNoise::apart() of lines between them
+constexpr double kGoesOn = 5;  // sigma
+constexpr double kCloseUp = 4;  // sigma
 constexpr double kRisen = 0.75;
 constexpr double kStepRms = 1.6;     // sigma: a side that is no line
 constexpr double kBentPitch = 0.02;  // of the pitch, that it is off beside its noise
-// Slope, by the points in between: what stands between two sheets is no surface to follow.
+// Slope, by the measured points in between: what stands between two sheets is no surface to follow.
 constexpr double kSteepWall[] = {0, 2, 2.5};
+double steep_wall(double between) {
+    const double one = std::clamp(between, 0.0, 1.0), two = std::clamp(between - 1, 0.0, 1.0);
+    return kSteepWall[0] + one * (kSteepWall[1] - kSteepWall[0]) + two * (kSteepWall[2] - kSteepWall[1]);
+}
 constexpr double kUpperHalf = 0.55;  // of the step, from above
 constexpr double kShadow = 0.6;      // of a step's height: so far a higher sheet may hide the lower one
 constexpr double kCoverSigma = 4;
@@ -31,6 +38,17 @@ constexpr int kFewestLines = 256;  // of a sensor: fewer that lie evenly about x
 constexpr int kRimLines = 5;       // an end nearer to the field's rim is none
 
 }  // namespace
+
+ContourSheets::Lines::Lines(double measured_apart)
+    : apart(measured_apart),
+      hole(lines(kHoleLines)),
+      side(lines(kStepSide)),
+      shorter(lines(kStepShort)),
+      between(lines(kStepBetween)) {}
+
+int ContourSheets::Lines::lines(int measured) const {
+    return static_cast<int>(std::ceil(measured * apart));
+}
 
 // Straight line over the line number through the points from..to, taken at `at`, by the running sums.
 ContourSheets::Side ContourSheets::side(int from, int to, double at) const {
@@ -57,7 +75,7 @@ ContourSheets::Side ContourSheets::side(int from, int to, double at) const {
 ContourSheets::Jump ContourSheets::jump(int i, int between, int points) const {
     Jump j;
     const int next = i + 1 + between, n = static_cast<int>(all_x_.size());
-    if (next >= n || line_[next] - line_[i] > kHoleLines) return j;
+    if (next >= n || line_[next] - line_[i] > lines_.hole) return j;
     if (between == 0 && run_[next] == 1) return j;
     int from = i - std::min(run_[i], points) + 1, to = next;
     while (to + 1 < n && to - next + 1 < points && run_[to + 1] > 1) ++to;
@@ -94,7 +112,7 @@ double ContourSheets::step(const Jump& over_all, int i, int between) const {
         const double least = *std::min_element(&all_z_[i + 1], &all_z_[i + between] + 1);
         if (top - least < kUpperHalf * std::abs(a - b)) return 0;
     }
-    const Jump close = jump(i, between, kStepShort);
+    const Jump close = jump(i, between, lines_.shorter);
     const Jump& j = bent(over_all) ? close : over_all;
     if (!(j.height > 0) || bent(j)) return 0;
     // On a radius the lines miss each other the less the shorter they are.
@@ -102,7 +120,7 @@ double ContourSheets::step(const Jump& over_all, int i, int between) const {
     if (!(j.height > std::max(kStepSigma * noise_ * j.spread, j.lines * j.longer))) return 0;
     // On a flank the points themselves rise by less than the lines miss each other.
     if (j.risen < kRisen * j.height - 3 * noise_) return 0;
-    return j.height < kSteepWall[between] * j.lines * j.shorter ? 0 : j.height;
+    return j.height < steep_wall((between + 1) / lines_.apart - 1) * j.lines * j.shorter ? 0 : j.height;
 }
 
 // Of neighbouring places the highest.
@@ -117,14 +135,14 @@ void ContourSheets::find_steps() {
         const double k = line_[i] - k0, x = all_x_[i] - x0, z = all_z_[i] - z0;
         const Sums term{k, x, z, k * k, k * x, k * z, x * x, x * z, z * z};
         for (std::size_t j = 0; j < term.size(); ++j) sums_[i + 1][j] = sums_[i][j] + term[j];
-        if (i > 0 && line_[i] - line_[i - 1] <= kHoleLines && !pitch_.is_gap(all_x_[i] - all_x_[i - 1], 0))
-            run_[i] = std::min(run_[i - 1] + 1, kStepSide);
+        if (i > 0 && line_[i] - line_[i - 1] <= lines_.hole && !pitch_.is_gap(all_x_[i] - all_x_[i - 1], 0))
+            run_[i] = std::min(run_[i - 1] + 1, lines_.side);
     }
     first_line_ = k0;
     jumps_.clear();
     scratch_.clear();
     for (int i = 0; i + 1 < n; ++i) {
-        jumps_.push_back(jump(i, 0, kStepSide));
+        jumps_.push_back(jump(i, 0, lines_.side));
         if (jumps_.back().spread > 0) scratch_.push_back(jumps_.back().height / jumps_.back().spread);
     }
     // What the lines miss each other by all over the profile is noise, however its points depend on another.
@@ -138,19 +156,19 @@ void ContourSheets::find_steps() {
     for (int i = 0; i + 1 < n; ++i) {
         const double best = height_[i];
         if (best == 0) continue;
-        const int from = std::max(0, i - kStepSide / 2), to = std::min(n - 2, i + kStepSide / 2);
+        const int from = std::max(0, i - lines_.side / 2), to = std::min(n - 2, i + lines_.side / 2);
         if (std::any_of(&height_[from], &height_[to] + 1, [&](double h) { return h > best; })) continue;
         cut_[i] = 1;
     }
-    for (int between = 1; between <= kStepBetween; ++between)
+    for (int between = 1; between <= lines_.between; ++between)
         for (int i = 0; i + between + 1 < n; ++i) {
             // A jump that is not far from one already says whether it is worth looking.
             if (!(jumps_[i].height > kWorthLooking * kStepSigma * noise_ * jumps_[i].spread)) continue;
             bool free = true;
-            for (int k = std::max(0, i - kStepSide / 2); k <= std::min(n - 1, i + between + kStepSide / 2);
-                 ++k)
+            for (int k = std::max(0, i - lines_.side / 2);
+                 k <= std::min(n - 1, i + between + lines_.side / 2); ++k)
                 free = free && !cut_[k] && !mixed_[k];
-            if (!free || step(jump(i, between, kStepSide), i, between) == 0) continue;
+            if (!free || step(jump(i, between, lines_.side), i, between) == 0) continue;
             cut_[i] = cut_[i + between] = 1;
             for (int k = 1; k <= between; ++k) mixed_[i + k] = 1;
         }
@@ -179,20 +197,20 @@ void ContourSheets::divide(const Profile& profile) {
         if (segment_[i] == segment_[i + 1]) ++pairs, runs += missing(i) > 0;
     const double share = (runs + 0.5) / (pairs + 1);
     const int hole = std::max(
-        kHoleLines, share < 1
-                        ? static_cast<int>(std::ceil(std::log(kByChance / std::max(n, 1)) / std::log(share)))
-                        : 1000);
+        lines_.hole, share < 1
+                         ? static_cast<int>(std::ceil(std::log(kByChance / std::max(n, 1)) / std::log(share)))
+                         : 1000);
     find_steps();
     // The filter's own border beside a step stands for the same step, a few points off.
     const auto beside_step = [&](int i) {
-        for (int k = std::max(0, i - kStepSide / 2); k <= std::min(n - 1, i + kStepSide / 2); ++k)
+        for (int k = std::max(0, i - lines_.side / 2); k <= std::min(n - 1, i + lines_.side / 2); ++k)
             if (cut_[k]) return true;
         return false;
     };
-    // A border of the filter where nothing is missing and one side continues the other: noise made it.
+    // A border of the filter where no hole is and one side continues the other: noise made it.
     const auto goes_on = [&](int i) {
         const Jump& j = jumps_[std::size_t(i)];
-        return j.spread > 0 && missing(i) == 0 && j.height < kGoesOn * noise_ * j.spread;
+        return j.spread > 0 && missing(i) < hole && j.height < kGoesOn * noise_ * j.spread;
     };
     for (int i = 0, first = 0; i < n; ++i) {
         if (mixed_[i]) {
@@ -270,6 +288,8 @@ void ContourSheets::gather(const Profile& profile, const FeatureWindow& window, 
     const ContourNoise noise = contour_noise(all_x_, all_z_, scratch_);
     noise_ = point_noise_ = noise.point_mm;
     measured_apart_ = noise.measured_apart;
+    profile_noise_ = profile_noise(all_x_, all_z_, scratch_);
+    lines_ = Lines(std::max({1.0, measured_apart_, kInterpolatedApart * profile_noise_.apart()}));
     if (!marked)
         for (std::size_t i = 1; i < all_x_.size(); ++i) {
             const double dx = all_x_[i] - all_x_[i - 1], dz = all_z_[i] - all_z_[i - 1];

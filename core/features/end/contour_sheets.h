@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "core/features/contour/contour_model.h"
+#include "core/features/contour/contour_noise.h"
 #include "core/features/feature_points.h"
 
 namespace seamwright {
@@ -61,8 +62,16 @@ class ContourSheets {
     double noise_mm() const { return noise_; }
     double point_noise_mm() const { return point_noise_; }  // across the contour, without what its shape adds
     double measured_apart() const { return measured_apart_; }  // ContourNoise
+    const ProfileNoise& noise() const { return profile_noise_; }
 
   private:
+    // The limits in lines of the profile, which may lie denser than what was measured (ContourNoise).
+    struct Lines {
+        explicit Lines(double measured_apart = 1);
+        int lines(int measured) const;
+        double apart;
+        int hole, side, shorter, between;
+    };
     struct Side {
         bool ok = false;
         double x, z, vx, vz;  // at the boundary; advance per line, in the order of the lines
@@ -100,6 +109,8 @@ class ContourSheets {
     std::vector<Sheet> sheets_;
     ContourPitch pitch_;
     double noise_ = 0, point_noise_ = 0, measured_apart_ = 0;
+    ProfileNoise profile_noise_;
+    Lines lines_;
 };
 
 }  // namespace seamwright

@@ -30,6 +30,7 @@ EndCurve straight(const LineFit& line) {
     curve.used = line.used;
     curve.spread_mm2 = line.spread_mm2;
     curve.widening = line.widening;
+    curve.alike = line.alike;
     curve.cofactor(0, 0) = 1.0 / line.used;
     curve.cofactor(1, 1) = 1 / line.spread_mm2;
     return curve;
@@ -48,10 +49,10 @@ void shrink(double share, EndCurve& curve) {
 
 }  // namespace
 
-EndFit::Result EndFit::fit(std::span<const double> x, std::span<const double> z, double noise_mm) {
+EndFit::Result EndFit::fit(std::span<const double> x, std::span<const double> z, const ProfileNoise& noise) {
     x_ = x;
     z_ = z;
-    noise_ = noise_mm;
+    workspace_.noise = noise;
     Result result;
     const LineFit line = fit_line(x, z, workspace_);
     if (!line.ok) return result;
@@ -69,7 +70,7 @@ bool EndFit::fit_arc(const LineFit& line, EndCurve& curve) {
     keep_.assign(x_.size(), 1);
     for (int round = 0; round < 12; ++round) {
         if (!least_squares(trial)) return false;
-        const double sigma = std::max(kMadToSigma * median_residual(trial), noise_);
+        const double sigma = std::max(kMadToSigma * median_residual(trial), workspace_.noise.point_mm);
         const double gate = std::max(kEndGate * sigma, kEndSmallest_mm);
         bool changed = false;
         for (std::size_t i = 0; i < x_.size(); ++i) {
@@ -80,6 +81,7 @@ bool EndFit::fit_arc(const LineFit& line, EndCurve& curve) {
         if (!changed) break;
     }
     if (trial.used < kEndPointsKept * line.used || median_residual(trial) > line_median) return false;
+    trial.alike = alike(trial);
     const double variance = trial.widening * trial.sigma_mm * trial.sigma_mm * trial.cofactor(2, 2);
     const double t2 = 0.25 * trial.curvature * trial.curvature / std::max(variance, kEndLeastVariance);
     if (!(t2 > kEndAkaike)) return false;
@@ -115,8 +117,8 @@ Eigen::Vector4d EndFit::cubic(const EndCurve& curve) const {
     if (freedom < 2 || !(solver.rcond() > kEndSingular)) return Eigen::Vector4d::Zero();
     const Eigen::Vector4d b = solver.solve(right);
     const double widening = freedom > 4 ? double(freedom) / (freedom - 2) : 2.0;
-    const double variance =
-        widening * std::max(rss - b.dot(right), 0.0) / freedom * solver.solve(Eigen::Vector4d::Unit(3))[3];
+    const double variance = widening * curve.alike * std::max(rss - b.dot(right), 0.0) / freedom *
+                            solver.solve(Eigen::Vector4d::Unit(3))[3];
     const double excess = b[3] * b[3] - variance;
     if (!(excess > 0)) return Eigen::Vector4d::Zero();
     const Eigen::Vector4d unit(1, 1 / size, 1 / (size * size), 1 / (size * size * size));
@@ -187,8 +189,9 @@ bool EndFit::least_squares(EndCurve& curve) const {
     curve.spread_mm2 = xx * curve.chord.x() * curve.chord.x() + 2 * xz * curve.chord.x() * curve.chord.y() +
                        zz * curve.chord.y() * curve.chord.y();
     curve.rms_mm = std::sqrt(rss / used);
-    curve.sigma_mm = std::sqrt(rss / freedom);
-    curve.widening = freedom > 4 ? double(freedom) / (freedom - 2) : 2.0;
+    const PooledSigma pooled = pooled_sigma(std::sqrt(rss / freedom), freedom, workspace_.noise);
+    curve.sigma_mm = pooled.sigma_mm;
+    curve.widening = pooled.widening;
     return true;
 }
 
@@ -197,6 +200,13 @@ double EndFit::squares(const EndCurve& curve) const {
     for (std::size_t i = 0; i < x_.size(); ++i)
         if (keep_[i]) rss += curve.residual(point(i)) * curve.residual(point(i));
     return rss;
+}
+
+double EndFit::alike(const EndCurve& curve) {
+    scratch_.clear();
+    for (std::size_t i = 0; i < x_.size(); ++i)
+        if (keep_[i]) scratch_.push_back(curve.residual(point(i)));
+    return alike_widening(scratch_, 3, workspace_.noise);
 }
 
 double EndFit::median_residual(const EndCurve& curve) {

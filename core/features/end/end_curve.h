@@ -10,7 +10,7 @@
 // the line's points, or when it leaves a larger median residual than the line. Without it a robust line takes the rounded
 // end, or the flat before it, for outliers and says confidently where neither of them is.
 //
-// Noise model: independent, equal, across the contour. Variances: v_line + min(T - 2, 1) (v_arc - v_line). Units mm, rad.
+// Noise model: equal, across the contour; neighbours may share it. Variances: v_line + min(T - 2, 1) (v_arc - v_line). Units mm, rad.
 // Degenerate: fewer than 6 points, all of them in one place, or turned by more than a half circle, know no arc.
 
 #include <Eigen/Core>
@@ -36,6 +36,7 @@ struct EndCurve {
     // Of (offset, turn, curvature / 2), without the noise: (sum r r^T)^-1, r = (1, s, s^2). Line: of the first two only.
     Eigen::Matrix3d cofactor = Eigen::Matrix3d::Zero();
     double widening = 1;  // of variances, for sigma being estimated from few points
+    double alike = 1;     // of variances, for neighbours that share their noise (contour_noise.h)
 
     Eigen::Vector2d normal() const { return {-direction.y(), direction.x()}; }
     double along(const Eigen::Vector2d& p) const {
@@ -64,19 +65,19 @@ struct EndCurve {
     }
     double variance_at(double s) const {
         const Eigen::Vector3d r(1, s, s * s);
-        return widening * sigma_mm * sigma_mm * r.dot(cofactor * r);
+        return widening * alike * sigma_mm * sigma_mm * r.dot(cofactor * r);
     }
 };
 
 class EndFit {
   public:
     // Line through the points, from the end inwards, and the arc where that explains them better. `ok` false: they form no
-    // line. `rounded`: the arc it is. `noise_mm`: of the profile's points, 0 where unknown.
+    // line. `rounded`: the arc it is. `noise`: of the profile.
     struct Result {
         bool ok = false, rounded = false;
         EndCurve curve;
     };
-    Result fit(std::span<const double> x, std::span<const double> z, double noise_mm);
+    Result fit(std::span<const double> x, std::span<const double> z, const ProfileNoise& noise);
 
   private:
     Eigen::Vector2d point(std::size_t i) const { return {x_[i], z_[i]}; }
@@ -84,10 +85,10 @@ class EndFit {
     bool least_squares(EndCurve& curve) const;
     Eigen::Vector4d cubic(const EndCurve& curve) const;
     double squares(const EndCurve& curve) const;
+    double alike(const EndCurve& curve);
     double median_residual(const EndCurve& curve);
 
     std::span<const double> x_, z_;
-    double noise_ = 0;
     std::vector<double> scratch_;
     std::vector<std::uint8_t> keep_;
     LineWorkspace workspace_;

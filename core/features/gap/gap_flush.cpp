@@ -109,6 +109,7 @@ GapFlush GapFlushGauge::measure(const Profile& profile) {
     const GapPart& reference_part = reference_left ? sides_.left() : sides_.right();
     const GapPart& other_part = reference_left ? sides_.right() : sides_.left();
     const double pitch = sides_.pitch_mm();
+    workspace_.noise = sides_.noise();
     const double inward_sign = reference_left ? 1 : -1;  // x direction from the reference into the gap
 
     // Lines first by the edges along x, then again by the edges along the surface.

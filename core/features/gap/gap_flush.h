@@ -17,10 +17,10 @@
 //     flush = n . (other surface at its edge - reference line)        positive when the other side stands
 //     proud
 //
-// Noise model: independent noise across each surface, estimated from each line's residuals; an edge is spread
-// evenly over that advance a along u, at least over a third of the pitch (variance a^2 / 12 each; a sensor's
-// noise is in z and moves it by its part along u as well), and known to a point's noise across. Covariance of
-// (gap, flush) in mm^2.
+// Noise model: across each surface, from each line's residuals, their likeness and the profile's noise
+// (contour_noise.h); an edge is spread evenly over that advance a along u, at least over a third of the pitch (variance
+// a^2 / 12 each; a sensor's noise is in z and moves it by its part along u as well), and known to a point's noise across.
+// Covariance of (gap, flush) in mm^2.
 
 #include <Eigen/Core>
 #include <string>

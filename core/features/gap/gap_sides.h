@@ -37,6 +37,7 @@ class GapSides {
     const GapPart& left() const { return parts_[0]; }
     const GapPart& right() const { return parts_[1]; }
     double pitch_mm() const { return pitch_; }  // along x, from line to line
+    ProfileNoise noise() { return points_.noise(); }
 
   private:
     struct Core {

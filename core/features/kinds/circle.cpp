@@ -8,7 +8,8 @@
 // short arcs) over the points within 3.5 robust sigma, until the set stands still. With a known radius only
 // the centre is fitted.
 //
-// Covariance: sigma^2 (J^T J)^-1 of the centre, sigma from the residuals. On a short arc the centre is hardly
+// Covariance: sigma^2 (J^T J)^-1 of the centre, sigma from the residuals, widened where neighbours are alike
+// (contour_noise.h). On a short arc the centre is hardly
 // determined along the arc's bisector (with a free radius the variance grows with the inverse fourth power of
 // the arc): below minimum_arc_deg, or when the centre's sigma exceeds a tenth of the radius, the answer is
 // ill_conditioned.
@@ -22,6 +23,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/features/contour/contour_noise.h"
 #include "core/features/feature_points.h"
 #include "core/features/kinds/feature_kinds.h"
 #include "core/geometry/pose.h"
@@ -269,7 +271,14 @@ class CircleFinder final : public FeatureFinder {
             feature.message = "no round piece of contour in the window";
             return feature;
         }
-        const double sigma2 = rss / std::max(1, used - unknowns);
+        scratch_.clear();
+        for (int i = 0; i < n; ++i)
+            if (keep_[i]) scratch_.push_back(circle.distance(points_.x[i], points_.z[i]));
+        const ProfileNoise noise = points_.noise();
+        const int freedom = std::max(1, used - unknowns);
+        const PooledSigma pooled = pooled_sigma(std::sqrt(rss / freedom), freedom, noise);
+        const double sigma2 =
+            pooled.sigma_mm * pooled.sigma_mm * pooled.widening * alike_widening(scratch_, unknowns, noise);
         feature.rms_mm = std::sqrt(rss / used);
         feature.point_mm = circle.centre;
         const Eigen::Matrix3d covariance = sigma2 * normal.ldlt().solve(Eigen::Matrix3d::Identity());

@@ -13,7 +13,7 @@
 //
 // Its covariance, along the tangent at the point and across it. Noise model: independent, equal, across the
 // contour, its sigma from the fit's residuals, and not below what the profile's noise beside them makes likely; of
-// interpolated points 1.5 f times the variance.
+// interpolated points 1.5 f times the variance, or what the residuals' likeness says (contour_noise.h).
 //     across   v + (k h^2 / 2)^2 + e^2,   v that of the curve there, h = r - q / 2, k its curvature
 //     along    (r^2 - 2 f p^2) / 12 + (r - q)^2 / 4 + noise^2
 // k h^2 / 2: beyond the last point the contour may bend on or go on straight. e, other shape than an
@@ -106,7 +106,7 @@ class ContourEnd final : public FeatureFinder {
         if (!chosen) return feature;
         const bool at_last = chosen->at_last;
         take_end(chosen->first, chosen->last, at_last);
-        const EndFit::Result fit = fit_.fit(fit_x_, fit_z_, sheets_.point_noise_mm());
+        const EndFit::Result fit = fit_.fit(fit_x_, fit_z_, sheets_.noise());
         if (!fit.ok) {
             feature.message = "the points before the end do not form a line";
             return feature;
@@ -114,7 +114,9 @@ class ContourEnd final : public FeatureFinder {
         EndCurve curve = fit.curve;
         const bool rounded = fit.rounded;
         const double apart = sheets_.measured_apart();
-        know_noise(apart, curve);
+        const double interpolated = std::max(1.0, kEndDependent * apart);
+        curve.sigma_mm *= std::sqrt(interpolated);
+        curve.alike = std::max(1.0, curve.alike / interpolated);
         const double last_s = curve.along(point(0));
         const double pitch = pitch_at(curve, rounded ? curve.tangent(last_s) : curve.direction, rounded);
         const double measured = apart * pitch;
@@ -184,18 +186,6 @@ class ContourEnd final : public FeatureFinder {
                 ? (std::asin(std::min(std::sin(steep) + turning * in_x, 1.0)) - steep) / turning
                 : in_x / std::max(advance, kEndSmallest_mm);
         return std::clamp(arc, pitch, std::max(pitch, kEndLongestPitch * fit_length_));
-    }
-
-    // Few points know their own noise badly, and rounded to a sensor's steps they may all lie on the curve: the profile's
-    // noise counts beside them as so many points would.
-    void know_noise(double apart, EndCurve& curve) const {
-        constexpr double kAsMany = 4;
-        const double own = std::max(curve.used - (curve.curvature != 0 ? 3 : 2), 1);
-        const double pooled = std::sqrt((own * curve.sigma_mm * curve.sigma_mm +
-                                         kAsMany * sheets_.point_noise_mm() * sheets_.point_noise_mm()) /
-                                        (own + kAsMany));
-        curve.sigma_mm = std::max(curve.sigma_mm, pooled) * std::sqrt(std::max(1.0, kEndDependent * apart));
-        curve.widening = std::min(curve.widening, (own + kAsMany) / (own + kAsMany - 2));
     }
 
     // Noise of x, from second differences: 0 on an exact grid; the median passes over missing returns.

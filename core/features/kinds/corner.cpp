@@ -211,6 +211,7 @@ class Corner final : public FeatureFinder {
             take([&](std::size_t i) { return i >= split && i < end; }, right_x_, right_z_);
         }
         LineFit a, b;
+        workspace_.noise = points_.noise();
         Eigen::Matrix2d normals;
         for (int round = 0; round < rounds; ++round) {
             if (left_x_.size() < kFewestPerLine || right_x_.size() < kFewestPerLine) {

@@ -4,7 +4,7 @@
 // highest and lowest, x over z for leftmost and rightmost), the window is centred on its vertex and the fit
 // repeated, so that the noise that made one point the extreme one does not choose the window. Vertex t = -b /
 // (2 a), h = c - b^2 / (4 a); the covariance is that of (a, b, c) carried through these, noise from the
-// residuals. The contour need not be a parabola (an arc between flanks, a ridge that noise hides): by how much a
+// residuals, widened where neighbours are alike (contour_noise.h). The contour need not be a parabola (an arc between flanks, a ridge that noise hides): by how much a
 // quartic through the same points has its vertex elsewhere, beyond what noise makes of the difference, is added.
 //
 // Where the contour has no smooth extremum (a ridge of a corner, the end of a slope) the parabola's vertex
@@ -19,6 +19,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/features/contour/contour_noise.h"
 #include "core/features/feature_points.h"
 #include "core/features/kinds/feature_kinds.h"
 
@@ -107,12 +108,13 @@ class Extremum final : public FeatureFinder {
         Eigen::Matrix<double, 2, 3> j;
         j << b / (2 * a * a), -1 / (2 * a), 0, b * b / (4 * a * a), -b / (2 * a), 1;
         j.row(0) *= fit_length_;
-        Eigen::Matrix2d c_th = j * covariance * j.transpose();
+        const Shape shape = other_shape(t, h, sign, *top.piece, fit, vertex);
+        Eigen::Matrix2d c_th = shape.alike * j * covariance * j.transpose();
         const double place = fit.centre + vertex * fit_length_;
         const double height = fit.origin + sign * (c - b * b / (4 * a));
         c_th(0, 1) *= sign;
         c_th(1, 0) *= sign;
-        c_th.diagonal() += other_shape2(t, h, sign, *top.piece, fit, vertex);
+        c_th.diagonal() += shape.off2;
         if (upright) {
             feature.point_mm = {place, height};
             feature.covariance_mm2 = c_th;
@@ -197,18 +199,23 @@ class Extremum final : public FeatureFinder {
         }
     }
 
-    // Squares of what the vertex of a quartic is off that of the parabola, in t and h, without the noise of the
-    // difference; 0 where the points do not know a quartic.
-    Eigen::Vector2d other_shape2(const std::vector<double>& t, const std::vector<double>& h, double sign,
-                                 const FeaturePoints::Piece& piece, const Parabola& fit,
-                                 double vertex) const {
-        using Vector5 = Eigen::Matrix<double, 5, 1>;
+    // What a quartic through the same points says beside the parabola; where they do not know one, nothing.
+    using Vector5 = Eigen::Matrix<double, 5, 1>;
+    struct Shape {
+        Eigen::Vector2d off2 =
+            Eigen::Vector2d::Zero();  // squares, without noise, of its vertex off the other's, in t and h
+        double alike = 1;             // contour_noise.h, of its residuals
+    };
+    Shape other_shape(const std::vector<double>& t, const std::vector<double>& h, double sign,
+                      const FeaturePoints::Piece& piece, const Parabola& fit, double vertex) const {
         constexpr int kFewest = 9;
         constexpr double kFarthest = 0.25;  // in u
         const double gate = kApexGate * std::sqrt(fit.sigma2) + kApexLeastGate_mm;
         Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
         Vector5 right = Vector5::Zero();
         double hh = 0;
+        rows_.clear();
+        scratch_.clear();
         int used = 0;
         for (int i = piece.first; i < piece.first + piece.count; ++i) {
             const double u = (t[i] - fit.centre) / fit_length_, v = sign * (h[i] - fit.origin);
@@ -220,13 +227,18 @@ class Extremum final : public FeatureFinder {
             normal += row * row.transpose();
             right += v * row;
             hh += v * v;
+            rows_.push_back(row);
+            scratch_.push_back(v);
             ++used;
         }
-        if (used < kFewest) return Eigen::Vector2d::Zero();
+        if (used < kFewest) return {};
         const Eigen::LDLT<Eigen::Matrix<double, 5, 5>> solver(normal);
-        if (!(solver.rcond() > kApexSingular)) return Eigen::Vector2d::Zero();
+        if (!(solver.rcond() > kApexSingular)) return {};
         const Vector5 c = solver.solve(right);
-        const double sigma2 = std::max(0.0, hh - right.dot(c)) / (used - 5);
+        Shape shape;
+        for (std::size_t i = 0; i < rows_.size(); ++i) scratch_[i] -= rows_[i].dot(c);
+        shape.alike = alike_widening(scratch_, 5, points_.noise());
+        const double sigma2 = shape.alike * std::max(0.0, hh - right.dot(c)) / (used - 5);
         const Eigen::Matrix2d full = solver.solve(Eigen::Matrix<double, 5, 2>::Identity()).topRows<2>();
         const Eigen::Matrix3d few = normal.topLeftCorner<3, 3>().ldlt().solve(Eigen::Matrix3d::Identity());
         const double bow = 2 * fit.coefficient[0];  // of both: the quartic's own says little at its middle
@@ -236,8 +248,9 @@ class Extremum final : public FeatureFinder {
         const double rise = c[0] - summit;
         const double shift_noise = sigma2 * std::max(0.0, full(1, 1) - few(1, 1)) / (bow * bow);
         const double rise_noise = sigma2 * std::max(0.0, full(0, 0) - few(0, 0));
-        return {fit_length_ * fit_length_ * std::max(0.0, shift * shift - shift_noise),
-                std::max(0.0, rise * rise - rise_noise)};
+        shape.off2 = {fit_length_ * fit_length_ * std::max(0.0, shift * shift - shift_noise),
+                      std::max(0.0, rise * rise - rise_noise)};
+        return shape;
     }
 
     // Round by round about the vertex that the last one found.
@@ -266,6 +279,7 @@ class Extremum final : public FeatureFinder {
     double fit_length_;
     mutable FeaturePoints points_;
     mutable std::vector<double> scratch_;
+    mutable std::vector<Vector5> rows_;
 };
 
 Expected<std::unique_ptr<FeatureFinder>> make_extremum(const FeatureRecipe& recipe) {

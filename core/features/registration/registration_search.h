@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/features/contour/contour_model.h"
+#include "core/features/contour/contour_noise.h"
 #include "core/features/registration/registration.h"
 #include "core/features/registration/sheet_ends.h"
 

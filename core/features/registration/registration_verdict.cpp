@@ -24,8 +24,10 @@ constexpr double kFewestTelling = 3;
 // Of a search step: ends that are known less well (a shadow that a turn moves) hold no place.
 constexpr double kEndsTell = 0.6;
 
-// Noise of neighbours is alike over this many points: interpolation onto a grid, a sensor's own smoothing, speckle.
-constexpr int kCorrelatedLags = 3;
+// Noise of neighbours is alike: interpolation onto a grid, a sensor's own smoothing, speckle. A lag counts as long as it and all
+// below it stand out of chance.
+constexpr int kMostLags = 12;
+constexpr double kAlikeByChance = 1;  // over sqrt(pairs)
 constexpr std::size_t kFewestPairs = 20;
 
 // Random points: as many beside the template as on it, and residuals that fill the gate evenly (0.58 of it).
@@ -121,7 +123,7 @@ double ContourMatcher::Impl::correlation(const AcrossNoise& noise, double scene_
         return template_variance * sum;
     };
     double widening = 1;
-    for (int lag = 1; lag <= kCorrelatedLags; ++lag) {
+    for (int lag = 1; lag <= kMostLags; ++lag) {
         double product = 0;
         std::size_t pairs = 0, ahead = 0;
         for (const Match& m : matches) {
@@ -134,9 +136,14 @@ double ContourMatcher::Impl::correlation(const AcrossNoise& noise, double scene_
             product += m.foot.residual * other.foot.residual / size - shared(m, other);
             ++pairs;
         }
-        if (pairs >= kFewestPairs) widening += 2 * product / (static_cast<double>(pairs) * scene_variance);
+        if (pairs < kFewestPairs) break;
+        const auto n = static_cast<double>(pairs);
+        // The fit takes about three unknowns' share out of every lag.
+        const double r = product / (n * scene_variance) + 3 * widening / n;
+        if (!(r > kAlikeByChance / std::sqrt(n))) break;
+        widening += 2 * std::min(r, 1.0);
     }
-    return std::max(widening, 1.0);
+    return widening;
 }
 
 void ContourMatcher::Impl::add_template_noise(NormalEquations& normal) const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/features/contour/contour_noise.h"
 #include "core/features/contour/reduce_contour.h"
 #include "core/features/kinds/feature_registry.h"
 #include "core/median.h"
@@ -21,7 +22,6 @@ constexpr double kNoStep_mm = 1e-7;           // differences below are none
 constexpr double kMiss = 0.1;                 // of a step: no whole multiple
 constexpr double kMostMisses = 0.05;          // of the differences
 constexpr double kLeastTolerance_mm = 0.02;   // of a straight piece
-constexpr double kMedianOfNormal = 0.6745;    // of |normal noise|, in sigma
 constexpr double kLeastHas = 1e-9;            // of what is divided by
 const double kUniform = 1 / std::sqrt(12.0);  // sigma of what lies anywhere within a step of 1
 
@@ -101,7 +101,7 @@ std::string_view name_of(ResolutionVerdict verdict) {
 }
 
 Expected<SensorNumbers> sensor_numbers(const Profile& profile) {
-    std::vector<double> spacing, bend, step;
+    std::vector<double> spacing, step, x, z, scratch;
     std::size_t returns = 0, first = 0, last = 0;
     const std::size_t n = profile.size();
     const auto seen = [&](std::size_t i) { return profile.segment[i] != kOutlier; };
@@ -110,19 +110,22 @@ Expected<SensorNumbers> sensor_numbers(const Profile& profile) {
             if (returns++ == 0) first = i;
             last = i;
         }
-        if (!seen(i) || i == 0 || !seen(i - 1) || profile.segment[i] != profile.segment[i - 1]) continue;
+        if (!seen(i)) continue;
+        x.push_back(profile.x_mm[i]);
+        z.push_back(profile.z_mm[i]);
+        if (i == 0 || !seen(i - 1) || profile.segment[i] != profile.segment[i - 1]) continue;
         const double dx = profile.x_mm[i] - profile.x_mm[i - 1], dz = profile.z_mm[i] - profile.z_mm[i - 1];
         spacing.push_back(std::hypot(dx, dz));
         step.push_back(std::abs(dz));
-        if (i < 2 || !seen(i - 2) || profile.segment[i] != profile.segment[i - 2]) continue;
-        bend.push_back(std::abs(profile.z_mm[i] - 2 * profile.z_mm[i - 1] + profile.z_mm[i - 2]));
     }
-    if (bend.size() < kFewestNeighbours)
-        return input_error(Text("{} points lie on one contour", bend.size()), "profile",
+    if (spacing.size() < kFewestNeighbours)
+        return input_error(Text("{} points lie on one contour", spacing.size()), "profile",
                            "give a profile of the contour, or of a flat sheet at its distance");
     SensorNumbers numbers;
-    numbers.pitch_mm = median(spacing);
-    numbers.noise_mm = median(bend) / kMedianOfNormal / std::sqrt(6.0);
+    // On a grid that was interpolated from coarser points neither lies as close nor as still as it seems.
+    const ContourNoise noise = contour_noise(x, z, scratch);
+    numbers.pitch_mm = median(spacing) * std::max(1.0, noise.measured_apart);
+    numbers.noise_mm = noise.point_mm;
     numbers.depth_step_mm = depth_step(std::move(step));
     // Beside the part there is nothing to return.
     numbers.missing_share = 1 - static_cast<double>(returns) / static_cast<double>(last - first + 1);

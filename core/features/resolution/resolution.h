@@ -15,8 +15,8 @@
 // Pitch and noise of a triangulating sensor grow with the distance and with its square: the cure is to come nearer, or a
 // sensor of a narrower field.
 //
-// Noise model: independent, normal, the same for x and z; estimated from second differences (median), which the curvature
-// of a contour over two points does not reach.
+// Noise model: normal, the same for x and z; of a profile contour_noise (contour_noise.h). Where that says that the points were
+// measured f lines of the grid apart, pitch is f lines.
 
 #include <optional>
 

@@ -1,4 +1,4 @@
-// Laws of a contour's noise, of the curve through it and of the polygon of few points.
+// Laws of the curve through a contour's points and of the polygon of few points.
 
 #include "core/features/contour/contour_model.h"
 
@@ -9,102 +9,9 @@
 
 #include "contours.h"
 #include "core/features/contour/reduce_contour.h"
-#include "core/features/kinds/feature_registry.h"
 
 namespace seamwright::test {
 namespace {
-
-// Points of a surface measured `apart` lines of an even grid apart, with independent noise, and laid on that grid by straight
-// lines between them.
-template <class Height>
-Profile interpolated(double from_x, double to_x, double pitch, double apart, double noise, Height height,
-                     Random& random) {
-    std::normal_distribution<double> normal(0, noise);
-    const double step = apart * pitch,
-                 begin = from_x - step * std::uniform_real_distribution<double>(0, 1)(random);
-    std::vector<double> z;
-    for (double x = begin; x < to_x + 2 * step; x += step) z.push_back(height(x) + normal(random));
-    Profile p;
-    for (double x = from_x; x <= to_x; x += pitch) {
-        const double at = (x - begin) / step;
-        const auto k = static_cast<std::size_t>(at);
-        p.x_mm.push_back(x);
-        p.z_mm.push_back(z[k] + (at - double(k)) * (z[k + 1] - z[k]));
-    }
-    return p;
-}
-
-TEST(ContourNoiseLaws, IndependentNoiseIsThatOfNeighbours) {
-    Random random(11);
-    std::vector<double> scratch;
-    std::normal_distribution<double> normal;
-    for (const bool even : {true, false}) {
-        int seen = 0;
-        double mean = 0;
-        for (int i = 0; i < 300; ++i) {
-            Profile p = sample(hem(-15, 15), 0.05);
-            add_noise(p, 0.02, random);
-            if (!even)
-                for (double& x : p.x_mm) x += 0.01 * normal(random);
-            const ContourNoise noise = contour_noise(p.x_mm, p.z_mm, scratch);
-            seen += noise.measured_apart > 0;
-            mean += noise.point_mm / 300;
-        }
-        EXPECT_LE(seen, even ? 3 : 0);
-        EXPECT_NEAR(mean, 0.02, 0.002);
-    }
-}
-
-// A point between two measured ones has sqrt(2 / 3) of their noise in the mean.
-TEST(ContourNoiseLaws, InterpolationIsSeenAndItsNoiseKept) {
-    Random random(12);
-    std::vector<double> scratch;
-    for (const double apart : {1.3, 1.6, 2.0, 2.5})
-        for (const double scale : {1.0, 25.4}) {
-            const double noise = 0.02 * scale;
-            double mean = 0, told = 0;
-            for (int i = 0; i < 100; ++i) {
-                const Profile p = interpolated(
-                    -30 * scale, 30 * scale, 0.05 * scale, apart, noise,
-                    [&](double x) { return 0.002 / scale * x * x; }, random);
-                const ContourNoise n = contour_noise(p.x_mm, p.z_mm, scratch);
-                mean += n.point_mm / 100;
-                told += n.measured_apart / 100;
-            }
-            EXPECT_NEAR(mean, std::sqrt(2.0 / 3) * noise, 0.2 * noise) << apart;
-            EXPECT_NEAR(told, apart, 0.2 * apart) << apart;
-        }
-}
-
-TEST(ContourNoiseLaws, WithoutNoiseNothingIsSeen) {
-    std::vector<double> scratch;
-    for (const double pitch : {0.02, 0.3}) {
-        const Profile p = sample(hem(-15, 15), pitch);
-        EXPECT_EQ(contour_noise(p.x_mm, p.z_mm, scratch).measured_apart, 0) << pitch;
-    }
-}
-
-// Of neighbours alone the noise is a fifth of what it is, and a flat beside the rim passes for a part of it.
-TEST(ContourNoiseLaws, TheCentreOfAnInterpolatedRimIsWhereItSays) {
-    Random random(13);
-    std::uniform_real_distribution<double> unit(0, 1);
-    const auto finder = make_feature_finder({"circle", {}, {}, Eigen::Vector2d::Zero()}).value();
-    int ok = 0, wrong = 0;
-    for (int i = 0; i < 200; ++i) {
-        const double radius = 3 + 4 * unit(random), far = radius * std::sin(rad_from_deg(70));
-        const Profile p = interpolated(
-            -0.5, far, 0.03 + 0.05 * unit(random), 2, 0.01 + 0.04 * unit(random),
-            [&](double x) { return x < 0 ? 0 : std::sqrt(std::max(radius * radius - x * x, 0.0)) - radius; },
-            random);
-        const Feature f = finder->find(p);
-        if (f.status != FeatureStatus::ok) continue;
-        ++ok;
-        const double error = (f.point_mm - Eigen::Vector2d(0, -radius)).norm();
-        wrong += error > 0.3 && error > 5 * std::sqrt(f.covariance_mm2.trace());
-    }
-    EXPECT_GT(ok, 150);
-    EXPECT_LE(wrong, 4);
-}
 
 TEST(ReduceContour, KeepsEveryPointWithinTolerance) {
     Random random(2);

@@ -336,9 +336,13 @@ inline Scene bead_top(Dice& dice, bool round) {
     s.either = !round;  // under noise a ridge is a summit, somewhere near
     if (round) s.recipe.parameters["fit_length_mm"] = 1.6 * radius * std::sin(rad(side));
     s = at_random_place(s, dice, 0);
+    // Of a polygon that is level at its top, the middle there.
     double highest = -1e9;
-    for (const Vector2d& p : s.sheets[0])
-        if (p.y() > highest) highest = p.y(), s.truth = p;
+    Vector2d first = s.truth;
+    for (const Vector2d& p : s.sheets[0]) {
+        if (p.y() > highest + 1e-9) highest = p.y(), first = p;
+        if (p.y() > highest - 1e-9) s.truth = 0.5 * (first + p);
+    }
     return s;
 }
 inline Scene rim_centre(Dice& dice) {

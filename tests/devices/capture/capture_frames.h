@@ -2,7 +2,6 @@
 // Frames with everything in them that a capture must keep, and what counts as equal: every bit.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <bit>
 #include <cmath>
@@ -12,14 +11,14 @@
 #include <string>
 
 #include "devices/capture/recorder.h"
+#include "tests/devices/temporary_folder.h"
 
 namespace seamwright::capture_test {
 
+// A file's path in a folder that the program takes with it when it ends; nothing is there.
 inline std::filesystem::path fresh_path(const std::string& name) {
-    const auto folder =
-        std::filesystem::temp_directory_path() / ("seamwright-capture-" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder);
-    const auto path = folder / name;
+    static const TemporaryFolder folder;
+    const auto path = folder.path() / name;
     std::filesystem::remove(path);
     std::filesystem::remove(path.string() + "-journal");
     return path;

@@ -6,7 +6,7 @@
 #include "core/geometry/notation.h"
 #include "devices/exchange/json_fields.h"
 #include "tests/core/geometry/rotations.h"
-#include "tests/devices/temporary_folder.h"
+#include "tests/devices/real_data.h"
 
 namespace seamwright {
 namespace {

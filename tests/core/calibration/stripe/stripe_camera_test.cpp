@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "tests/core/calibration/camera/camera_scene.h"
+#include "tests/devices/real_data.h"
 
 namespace seamwright {
 namespace {
@@ -212,8 +213,7 @@ TEST(StripeCamera, RefusesWhatContradictsItself) {
 // -------------------------------------------------------------------------------------------------
 
 fs::path data() {
-    const char* given = std::getenv("SEAMWRIGHT_DATA");
-    return fs::path(given ? given : SEAMWRIGHT_DATA_DIR) / "etna";
+    return real_data() / "etna";
 }
 
 std::vector<StripeObservation> observe_folder(const fs::path& folder) {

@@ -1,0 +1,255 @@
+// Laws of a contour's noise: how large it is, how far neighbours share it, and that what is fitted to such points is as
+// unsure as it says.
+
+#include "core/features/contour/contour_noise.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <functional>
+
+#include "contours.h"
+#include "core/features/contour/line_fit.h"
+#include "core/features/kinds/feature_registry.h"
+
+namespace seamwright::test {
+namespace {
+
+// Points of a surface measured `apart` lines of an even grid apart, with independent noise, and laid on that grid by straight
+// lines between them.
+template <class Height>
+Profile interpolated(double from_x, double to_x, double pitch, double apart, double noise, Height height,
+                     Random& random) {
+    std::normal_distribution<double> normal(0, noise);
+    const double step = apart * pitch,
+                 begin = from_x - step * std::uniform_real_distribution<double>(0, 1)(random);
+    std::vector<double> z;
+    for (double x = begin; x < to_x + 2 * step; x += step) z.push_back(height(x) + normal(random));
+    Profile p;
+    for (double x = from_x; x <= to_x; x += pitch) {
+        const double at = (x - begin) / step;
+        const auto k = static_cast<std::size_t>(at);
+        p.x_mm.push_back(x);
+        p.z_mm.push_back(z[k] + (at - double(k)) * (z[k + 1] - z[k]));
+    }
+    return p;
+}
+
+TEST(ContourNoiseLaws, IndependentNoiseIsThatOfNeighbours) {
+    Random random(11);
+    std::vector<double> scratch;
+    std::normal_distribution<double> normal;
+    for (const bool even : {true, false}) {
+        int seen = 0;
+        double mean = 0;
+        for (int i = 0; i < 300; ++i) {
+            Profile p = sample(hem(-15, 15), 0.05);
+            add_noise(p, 0.02, random);
+            if (!even)
+                for (double& x : p.x_mm) x += 0.01 * normal(random);
+            const ContourNoise noise = contour_noise(p.x_mm, p.z_mm, scratch);
+            seen += noise.measured_apart > 0;
+            mean += noise.point_mm / 300;
+        }
+        EXPECT_LE(seen, even ? 3 : 0);
+        EXPECT_NEAR(mean, 0.02, 0.002);
+    }
+}
+
+// A point between two measured ones has sqrt(2 / 3) of their noise in the mean.
+TEST(ContourNoiseLaws, InterpolationIsSeenAndItsNoiseKept) {
+    Random random(12);
+    std::vector<double> scratch;
+    for (const double apart : {1.3, 1.6, 2.0, 2.5})
+        for (const double scale : {1.0, 25.4}) {
+            const double noise = 0.02 * scale;
+            double mean = 0, told = 0;
+            for (int i = 0; i < 100; ++i) {
+                const Profile p = interpolated(
+                    -30 * scale, 30 * scale, 0.05 * scale, apart, noise,
+                    [&](double x) { return 0.002 / scale * x * x; }, random);
+                const ContourNoise n = contour_noise(p.x_mm, p.z_mm, scratch);
+                mean += n.point_mm / 100;
+                told += n.measured_apart / 100;
+            }
+            EXPECT_NEAR(mean, std::sqrt(2.0 / 3) * noise, 0.2 * noise) << apart;
+            EXPECT_NEAR(told, apart, 0.2 * apart) << apart;
+        }
+}
+
+TEST(ContourNoiseLaws, WithoutNoiseNothingIsSeen) {
+    std::vector<double> scratch;
+    for (const double pitch : {0.02, 0.3}) {
+        const Profile p = sample(hem(-15, 15), pitch);
+        EXPECT_EQ(contour_noise(p.x_mm, p.z_mm, scratch).measured_apart, 0) << pitch;
+    }
+}
+
+// Of neighbours alone the noise is a fifth of what it is, and a flat beside the rim passes for a part of it.
+TEST(ContourNoiseLaws, TheCentreOfAnInterpolatedRimIsWhereItSays) {
+    Random random(13);
+    std::uniform_real_distribution<double> unit(0, 1);
+    const auto finder = make_feature_finder({"circle", {}, {}, Eigen::Vector2d::Zero()}).value();
+    int ok = 0, wrong = 0;
+    for (int i = 0; i < 200; ++i) {
+        const double radius = 3 + 4 * unit(random), far = radius * std::sin(rad_from_deg(70));
+        const Profile p = interpolated(
+            -0.5, far, 0.03 + 0.05 * unit(random), 2, 0.01 + 0.04 * unit(random),
+            [&](double x) { return x < 0 ? 0 : std::sqrt(std::max(radius * radius - x * x, 0.0)) - radius; },
+            random);
+        const Feature f = finder->find(p);
+        if (f.status != FeatureStatus::ok) continue;
+        ++ok;
+        const double error = (f.point_mm - Eigen::Vector2d(0, -radius)).norm();
+        wrong += error > 0.3 && error > 5 * std::sqrt(f.covariance_mm2.trace());
+    }
+    EXPECT_GT(ok, 150);
+    EXPECT_LE(wrong, 4);
+}
+
+// Mean of `many` neighbours: what a sensor's own smoothing makes of its profile.
+Profile smoothed(const Profile& p, int many) {
+    Profile out = p;
+    const int n = static_cast<int>(p.size()), half = many / 2;
+    for (int i = half; i + half < n; ++i) {
+        double sum = 0;
+        for (int k = i - half; k <= i + half; ++k) sum += p.z_mm[std::size_t(k)];
+        out.z_mm[std::size_t(i)] = sum / many;
+    }
+    return out;
+}
+
+TEST(ProfileNoiseLaws, AMeanOfManyNeighboursCountsAsOnePoint) {
+    Random random(14);
+    std::vector<double> scratch;
+    for (const int many : {1, 3, 5}) {
+        double apart = 0;
+        constexpr int kTrials = 200;
+        for (int i = 0; i < kTrials; ++i) {
+            Profile p = sample(hem(-15, 15), 0.05);
+            add_noise(p, 0.03, random);
+            p = smoothed(p, many);
+            apart += profile_noise(p.x_mm, p.z_mm, scratch).apart() / kTrials;
+        }
+        EXPECT_NEAR(apart, many, 0.2 * many) << many;
+    }
+}
+
+// Between points measured f lines apart a straight line: the long-run variance is f times the measured points', a point's own
+// two thirds of theirs.
+TEST(ProfileNoiseLaws, InterpolationBetweenTwoLinesIsSeen) {
+    Random random(15);
+    std::vector<double> scratch;
+    double apart = 0;
+    for (int i = 0; i < 100; ++i) {
+        const Profile p = interpolated(
+            -30, 30, 0.05, 2, 0.02, [](double x) { return 0.002 * x * x; }, random);
+        apart += profile_noise(p.x_mm, p.z_mm, scratch).apart() / 100;
+    }
+    EXPECT_NEAR(apart, 3, 0.5);
+}
+
+// What stands out of the noise is shape: it says nothing of neighbours.
+TEST(ProfileNoiseLaws, ShapeIsNoLikeness) {
+    Random random(16);
+    std::vector<double> scratch;
+    for (const double noise : {0.0, 1e-4, 1e-3, 0.01}) {
+        Profile p;
+        for (int i = 0; i < 800; ++i) {
+            p.x_mm.push_back(0.05 * i);
+            p.z_mm.push_back(2 * std::sin(0.05 * i));
+        }
+        if (noise > 0) add_noise(p, noise, random);
+        EXPECT_LT(profile_noise(p.x_mm, p.z_mm, scratch).apart(), 1.5) << noise;
+    }
+    const ProfileNoise none = profile_noise({}, {}, scratch);
+    EXPECT_EQ(none.points, 0);
+    EXPECT_EQ(none.apart(), 1);
+}
+
+TEST(PooledSigma, NeverSmallerAndKnownBetter) {
+    ProfileNoise profile;
+    EXPECT_EQ(pooled_sigma(0.01, 2, profile).sigma_mm, 0.01);
+    EXPECT_EQ(pooled_sigma(0.01, 2, profile).widening, 2);
+    profile.point_mm = 0.05;
+    const PooledSigma few = pooled_sigma(0, 2, profile), larger = pooled_sigma(0.1, 2, profile);
+    EXPECT_GT(few.sigma_mm, 0.03);
+    EXPECT_LT(few.sigma_mm, 0.05);
+    EXPECT_EQ(larger.sigma_mm, 0.1);
+    EXPECT_LT(few.widening, 2);
+    EXPECT_NEAR(pooled_sigma(0.05, 1000, profile).sigma_mm, 0.05, 1e-12);
+}
+
+// The stated sigma holds whatever the sensor makes of its noise: of 1000 parts 95 % lie within. Raw, a mean of three and of
+// five, and interpolated from every second line; a corner of two short flanks and a rim's centre.
+class SharedNoise : public testing::TestWithParam<int> {
+  protected:
+    Profile profile(double pitch, double noise, const std::function<double(double)>& height, double from,
+                    double to) {
+        if (GetParam() == 2) return interpolated(from, to, pitch, 2, noise, height, random_);
+        Profile p;
+        std::normal_distribution<double> normal(0, noise);
+        for (double x = from; x <= to; x += pitch) {
+            p.x_mm.push_back(x);
+            p.z_mm.push_back(height(x) + normal(random_));
+        }
+        return smoothed(p, GetParam());
+    }
+    void covers(const FeatureFinder& finder, const Profile& p, const Eigen::Vector2d& truth) {
+        const Feature f = finder.find(p);
+        if (f.status != FeatureStatus::ok) return;
+        const Eigen::Vector2d e = f.point_mm - truth;
+        ++found_;
+        within_ += e.dot(f.covariance_mm2.ldlt().solve(e)) < 5.991;
+    }
+    Random random_{17};
+    int found_ = 0, within_ = 0;
+};
+
+TEST_P(SharedNoise, ACornerIsAsUnsureAsItSays) {
+    std::uniform_real_distribution<double> unit(0, 1);
+    const auto finder =
+        make_feature_finder({"corner", {{"blend_mm", 0.5}}, {}, Eigen::Vector2d::Zero()}).value();
+    for (int i = 0; i < 1000; ++i) {
+        const double pitch = 0.03 + 0.1 * unit(random_),
+                     slope = std::tan(rad_from_deg(20 + 20 * unit(random_))), at = unit(random_) - 0.5,
+                     reach = 40 * pitch;
+        // Away from the bend the smoothing takes nothing of the flanks.
+        const Profile p = profile(
+            pitch, 0.01 + 0.03 * unit(random_),
+            [&](double x) { return x < at ? 0.1 * (x - at) : -slope * (x - at); }, at - 3 * reach,
+            at + reach);
+        covers(*finder, p, {at, 0});
+    }
+    EXPECT_GT(found_, 950);
+    EXPECT_GE(within_, 0.93 * found_);
+    EXPECT_LE(within_, 0.99 * found_);
+}
+
+TEST_P(SharedNoise, ARimsCentreIsAsUnsureAsItSays) {
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (int i = 0; i < 1000; ++i) {
+        const double radius = 4 + 4 * unit(random_), far = radius * std::sin(rad_from_deg(60));
+        const Profile p = profile(
+            0.03 + 0.07 * unit(random_), 0.005 + 0.02 * unit(random_),
+            [&](double x) {
+                return x < -far
+                           ? -0.5 * radius
+                           : std::sqrt(std::max(radius * radius - x * x, 0.25 * radius * radius)) - radius;
+            },
+            -4 * far, far);
+        const auto finder =
+            make_feature_finder({"circle", {{"window_x_min_mm", -0.9 * far}}, {}, Eigen::Vector2d::Zero()})
+                .value();
+        covers(*finder, p, {0, -radius});
+    }
+    EXPECT_GT(found_, 900);
+    EXPECT_GE(within_, 0.93 * found_);
+    EXPECT_LE(within_, 0.99 * found_);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfSensors, SharedNoise, testing::Values(1, 3, 5, 2));
+
+}  // namespace
+}  // namespace seamwright::test

@@ -112,25 +112,37 @@ TEST(ContourScenes, RightOrRefusedButNeverWrong) {
     }
 }
 
-// Of what a mean makes of a step of a few lines no two sheets are left to see: such laps are a slope.
+// A lap whose step a mean of `neighbours` leaves steeper than 63 degrees: what is flatter is a flank to anybody.
+Scene clear_lap(Dice& dice, const char* meant, int neighbours) {
+    for (;;) {
+        Scene s = lap(dice, meant);
+        const Vector2d along = (s.sheets[0][1] - s.sheets[0][0]).normalized(),
+                       down = s.sheets[1][0] - s.sheets[0][1];
+        if (std::abs(along.x() * down.y() - along.y() * down.x()) > 2 * neighbours * s.sensor.pitch) return s;
+    }
+}
+
 TEST(ContourScenes, SmoothedProfilesAreNoOthers) {
-    const std::vector<Kind> kinds{
-        {"bare edge", bare_edge, 0.99},
-        {"edge beyond the field", edge_out_of_field, 1},
-        {"window ends before the edge", window_before_the_end, 1},
-        {"lap, upper sheet asked for", [](Dice& d) { return lap(d, "highest"); }, 0.94},
-        {"lap, lower sheet asked for", [](Dice& d) { return lap(d, "lowest"); }, 0.98},
-        {"rounded rim, radius 1.5 to 8", [](Dice& d) { return rounded_rim(d, 1.5, 8); }, 0.95},
-        {"hole rim, 3 to 20 wide", [](Dice& d) { return gap_rim(d, 3, 20, 0); }, 0.95},
-        {"one sharp corner", [](Dice& d) { return bend(d, false); }, 0.98},
-        {"fillet weld, toe in a window", weld_toe, 0.98},
-    };
-    for (const int neighbours : {3, 5})
+    for (const int neighbours : {3, 5}) {
+        const std::vector<Kind> kinds{
+            {"bare edge", bare_edge, 0.99},
+            {"edge beyond the field", edge_out_of_field, 1},
+            {"window ends before the edge", window_before_the_end, 1},
+            {"lap, upper sheet asked for", [=](Dice& d) { return clear_lap(d, "highest", neighbours); },
+             0.99},
+            {"lap, lower sheet asked for", [=](Dice& d) { return clear_lap(d, "lowest", neighbours); }, 0.99},
+            {"lap, nothing asked for", [=](Dice& d) { return clear_lap(d, "default", neighbours); }, 0.99},
+            {"rounded rim, radius 1.5 to 8", [](Dice& d) { return rounded_rim(d, 1.5, 8); }, 0.96},
+            {"hole rim, 3 to 20 wide", [](Dice& d) { return gap_rim(d, 3, 20, 0); }, 0.97},
+            {"one sharp corner", [](Dice& d) { return bend(d, false); }, 0.98},
+            {"fillet weld, toe in a window", weld_toe, 0.98},
+        };
         for (const Kind& kind : kinds) {
             const Tally tally = tally_of(kind, neighbours);
-            EXPECT_LE(tally.wrong, 0.02 * tally.all()) << kind.name << " " << neighbours;
+            EXPECT_LE(tally.wrong, tally.all() / 300) << kind.name << " " << neighbours;
             EXPECT_GE(tally.right, kind.least_right * tally.all()) << kind.name << " " << neighbours;
         }
+    }
 }
 
 TEST(ContourScenes, FlanksKeepTheirPoints) {

@@ -39,9 +39,10 @@ constexpr int kRimLines = 5;       // an end nearer to the field's rim is none
 
 }  // namespace
 
-ContourSheets::Lines::Lines(double measured_apart)
-    : apart(measured_apart),
-      hole(lines(kHoleLines)),
+// Noise that is shared smears a step; it fills no hole.
+ContourSheets::Lines::Lines(double measured_apart, double shared)
+    : apart(std::max(measured_apart, shared)),
+      hole(static_cast<int>(std::ceil(kHoleLines * measured_apart))),
       side(lines(kStepSide)),
       shorter(lines(kStepShort)),
       between(lines(kStepBetween)) {}
@@ -289,7 +290,7 @@ void ContourSheets::gather(const Profile& profile, const FeatureWindow& window, 
     noise_ = point_noise_ = noise.point_mm;
     measured_apart_ = noise.measured_apart;
     profile_noise_ = profile_noise(all_x_, all_z_, scratch_);
-    lines_ = Lines(std::max({1.0, measured_apart_, kInterpolatedApart * profile_noise_.apart()}));
+    lines_ = Lines(std::max(1.0, measured_apart_), kInterpolatedApart * profile_noise_.apart());
     if (!marked)
         for (std::size_t i = 1; i < all_x_.size(); ++i) {
             const double dx = all_x_[i] - all_x_[i - 1], dz = all_z_[i] - all_z_[i - 1];

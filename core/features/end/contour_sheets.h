@@ -67,7 +67,7 @@ class ContourSheets {
   private:
     // The limits in lines of the profile, which may lie denser than what was measured (ContourNoise).
     struct Lines {
-        explicit Lines(double measured_apart = 1);
+        explicit Lines(double measured_apart = 1, double shared = 1);
         int lines(int measured) const;
         double apart;
         int hole, side, shorter, between;

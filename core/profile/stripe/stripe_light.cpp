@@ -70,7 +70,7 @@ StripeLight stripe_light(const StripePeaks& peaks, int full_scale, const std::ve
     return light;
 }
 
-double surrounding_level(const StripeImage& image) {
+double grey_level(const StripeImage& image, double share) {
     if (image.empty()) return 0;
     std::vector<int> sample;
     for (int v = 0; v < image.height; v += 8)
@@ -81,9 +81,10 @@ double surrounding_level(const StripeImage& image) {
                                  ? std::to_integer<int>(at[0])
                                  : std::to_integer<int>(at[0]) + 256 * std::to_integer<int>(at[1]));
         }
-    const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
-    std::nth_element(sample.begin(), middle, sample.end());
-    return static_cast<double>(*middle) / image.full_scale();
+    const auto place =
+        sample.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sample.size()));
+    std::nth_element(sample.begin(), place, sample.end());
+    return static_cast<double>(*place) / image.full_scale();
 }
 
 std::string_view to_string(LightVerdict verdict) {

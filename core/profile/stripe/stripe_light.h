@@ -28,8 +28,13 @@ struct StripeLight {
 StripeLight stripe_light(const StripePeaks& peaks, int full_scale,
                          const std::vector<std::uint8_t>& only = {});
 
-// Half of the pixels are darker: 1 where the whole image is flooded. Every 8th pixel of every 8th row.
-double surrounding_level(const StripeImage& image);
+// The grey, as a share of full scale, that `share` of the pixels do not reach; of every 8th pixel of every 8th row. 0 of an
+// empty image.
+double grey_level(const StripeImage& image, double share);
+// Half of the pixels are darker: 1 where the whole image is flooded.
+inline double surrounding_level(const StripeImage& image) {
+    return grey_level(image, 0.5);
+}
 
 // The exposure and gain that a frame was taken with, and what its stripe looked like: kept beside what was measured in it.
 struct SeenLight {

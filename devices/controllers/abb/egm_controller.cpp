@@ -14,6 +14,7 @@
 #include "devices/abb/egm_message.h"
 #include "devices/abb/program.h"
 #include "devices/controllers/abb/egm_application.h"
+#include "devices/controllers/cyclic/read_within.h"
 #include "devices/controllers/cyclic/simulated_path.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/net/socket.h"
@@ -253,24 +254,17 @@ Expected<std::unique_ptr<SimulatedController>> start_abb_egm(std::shared_ptr<Sim
     EgmRobotOptions o;
     SEAM_TRY(auto address, json_string_or(settings, "address", o.address, ""));
     o.address = address;
-    for (const auto& [key, value] : {std::pair<const char*, int*>{"port", &o.port},
-                                     {"cycle_ms", &o.cycle_ms},
-                                     {"late_limit", &o.late_limit},
-                                     {"restart_ms", &o.restart_ms},
-                                     {"ramp_out_ms", &o.ramp_out_ms},
-                                     {"slow_ms", &o.slow_ms}}) {
-        SEAM_TRY(auto number, json_number_or(settings, key, *value, ""));
-        if (!(number >= 1 && number <= 65535)) return input_error("not within 1 and 65535", key);
-        *value = static_cast<int>(number);
-    }
-    for (const auto& [key, value] :
-         {std::pair<const char*, double*>{"max_translation_mm", &o.max_translation_mm},
-          {"path_s", &o.path_s},
-          {"speed_mm_s", &o.path.speed_mm_s}}) {
-        SEAM_TRY(auto number, json_number_or(settings, key, *value, ""));
-        if (!(number >= 0 && number <= 1e4)) return input_error("not within 0 and 10000", key);
-        *value = number;
-    }
+    SEAM_OK(read_within<int>(settings, 1, 65535,
+                             {{"port", &o.port},
+                              {"cycle_ms", &o.cycle_ms},
+                              {"late_limit", &o.late_limit},
+                              {"restart_ms", &o.restart_ms},
+                              {"ramp_out_ms", &o.ramp_out_ms},
+                              {"slow_ms", &o.slow_ms}}));
+    SEAM_OK(read_within<double>(settings, 0, 1e4,
+                                {{"max_translation_mm", &o.max_translation_mm},
+                                 {"path_s", &o.path_s},
+                                 {"speed_mm_s", &o.path.speed_mm_s}}));
     SEAM_TRY(auto straight, json_bool_or(settings, "straight", false, ""));
     o.path.straight = straight;
     SEAM_TRY(auto application, json_bool_or(settings, "application", o.application, ""));

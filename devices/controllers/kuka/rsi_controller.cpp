@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "core/geometry/notation.h"
+#include "devices/controllers/cyclic/read_within.h"
 #include "devices/controllers/kuka/rsi_application.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/kuka/rsi_program.h"
@@ -315,24 +316,17 @@ Expected<std::unique_ptr<SimulatedController>> start_kuka_rsi(std::shared_ptr<Si
         *value = read;
     }
     o.tool = reference == "tool";
-    for (const auto& [key, value] : {std::pair<const char*, int*>{"port", &o.port},
-                                     {"cycle_ms", &o.cycle_ms},
-                                     {"late_limit", &o.late_limit},
-                                     {"restart_ms", &o.restart_ms},
-                                     {"following_ms", &o.following_ms},
-                                     {"slow_ms", &o.slow_ms}}) {
-        SEAM_TRY(auto number, json_number_or(settings, key, *value, ""));
-        if (!(number >= 1 && number <= 65535)) return input_error("not within 1 and 65535", key);
-        *value = static_cast<int>(number);
-    }
-    for (const auto& [key, value] :
-         {std::pair<const char*, double*>{"max_translation_mm", &o.max_translation_mm},
-          {"path_s", &o.path_s},
-          {"speed_mm_s", &o.path.speed_mm_s}}) {
-        SEAM_TRY(auto number, json_number_or(settings, key, *value, ""));
-        if (!(number >= 0 && number <= 1e4)) return input_error("not within 0 and 10000", key);
-        *value = number;
-    }
+    SEAM_OK(read_within<int>(settings, 1, 65535,
+                             {{"port", &o.port},
+                              {"cycle_ms", &o.cycle_ms},
+                              {"late_limit", &o.late_limit},
+                              {"restart_ms", &o.restart_ms},
+                              {"following_ms", &o.following_ms},
+                              {"slow_ms", &o.slow_ms}}));
+    SEAM_OK(read_within<double>(settings, 0, 1e4,
+                                {{"max_translation_mm", &o.max_translation_mm},
+                                 {"path_s", &o.path_s},
+                                 {"speed_mm_s", &o.path.speed_mm_s}}));
     SEAM_OK(read_simulated_path(settings, o.path));
     auto measuring = start_measuring_controller(settings, cell, start_controller);
     if (!measuring) return measuring;

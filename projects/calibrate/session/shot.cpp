@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 
+#include "core/profile/stripe/stripe_light.h"
 #include "devices/exchange/image_file.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
@@ -17,29 +18,13 @@ namespace {
 
 constexpr double kSameShotMm = 0.05, kSameShotDeg = 0.01;
 constexpr std::chrono::milliseconds kShotFrame{5000};
-constexpr double kBrightShare = 0.6;  // of full scale: where the bright end of a board's picture should lie
+constexpr double kBright = 0.98;  // of the pixels are darker than the bright end of a board's picture, which
+constexpr double kBrightShare = 0.6;  // should lie at so much of full scale
 constexpr int kExposures = 4;
 
 Expected<FramePtr> snap(ProfileSource& sensor, const std::stop_token& cancel) {
     SEAM_OK(sensor.trigger(""));
     return next_frame(sensor, kShotFrame, cancel);
-}
-
-// Share of full scale that two percent of the pixels exceed.
-double brightness(const StripeImage& image) {
-    std::vector<int> sample;
-    for (int v = 0; v < image.height; v += 8)
-        for (int u = 0; u < image.width; u += 8) {
-            const std::byte* at = image.pixels + static_cast<std::size_t>(v) * image.row_bytes +
-                                  static_cast<std::size_t>(u * image.bytes_per_pixel());
-            sample.push_back(image.bytes_per_pixel() == 1
-                                 ? std::to_integer<int>(at[0])
-                                 : std::to_integer<int>(at[0]) + 256 * std::to_integer<int>(at[1]));
-        }
-    if (sample.empty()) return 0;
-    const auto place = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() * 98 / 100);
-    std::nth_element(sample.begin(), place, sample.end());
-    return static_cast<double>(*place) / image.full_scale();
 }
 
 const ParameterInfo* named(const std::vector<ParameterInfo>& list, const std::string& name) {
@@ -63,7 +48,7 @@ Expected<FramePtr> board_picture(ProfileSource& sensor, const std::stop_token& c
     for (int k = 0; k < kExposures; ++k) {
         picture = snap(sensor, cancel);
         if (!picture || !exposure || (*picture)->image.empty()) break;
-        const double bright = brightness((*picture)->image);
+        const double bright = grey_level((*picture)->image, kBright);
         if (bright > 0.5 * kBrightShare && bright < 0.95) break;
         time_us = std::clamp(time_us * std::clamp(kBrightShare / std::max(bright, 0.02), 0.1, 8.0),
                              std::max(1.0, exposure->minimum), exposure->maximum);

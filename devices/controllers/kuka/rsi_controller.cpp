@@ -39,13 +39,13 @@ class Rsi final : public SimulatedRsi {
     Rsi(Options options, UdpSocket socket, std::unique_ptr<SimulatedController> measuring)
         : options_(std::move(options)), socket_(std::move(socket)), measuring_(std::move(measuring)) {}
     // Error (KrlError) for a program that the controller does not load.
-    void start(const std::shared_ptr<SimulatedCell>& cell, const std::vector<ProgramFile>& program) {
-        cell_ = cell;
+    void start(std::shared_ptr<SimulatedCell> cell, const std::vector<ProgramFile>& program) {
+        cell_ = std::move(cell);
         if (options_.application) {
             krl::RsiApplicationSettings settings{options_.path, options_.path_s, options_.restart_ms};
             settings.path_over = [this] { take(); };
-            if (cell)
-                settings.stop_message = [cell] {
+            if (cell_)
+                settings.stop_message = [cell = cell_] {
                     return cell->mode() == RobotMode::stopped || cell->mode() == RobotMode::fault;
                 };
             application_ = std::make_unique<krl::RsiApplication>(std::move(settings), program);
@@ -336,7 +336,7 @@ Expected<std::unique_ptr<SimulatedController>> start_kuka_rsi(std::shared_ptr<Si
     SEAM_TRY(auto program, write_rsi_program(request));
     auto controller = std::make_unique<Rsi>(std::move(o), std::move(socket), std::move(*measuring));
     try {
-        controller->start(cell, program);
+        controller->start(std::move(cell), program);
     } catch (const krl::KrlError& e) {
         return device_error(Text("the controller does not take the program: {}", e.what()), "simulated KUKA");
     }

@@ -100,7 +100,7 @@ double contour_noise_mm(std::span<const double> x, std::span<const double> z, st
 ProfileNoise profile_noise(std::span<const double> x, std::span<const double> z,
                            std::vector<double>& scratch) {
     ProfileNoise like;
-    like.point_mm = contour_noise_mm(x, z, scratch);
+    static_cast<ContourNoise&>(like) = contour_noise(x, z, scratch);
     constexpr std::size_t kMost = ProfileNoise::kLags + 1 + kLevelApart;
     if (x.size() < kLikenessPoints) return like;
     const std::size_t stride = std::max<std::size_t>(x.size() / kLikenessMost, 1);

@@ -30,9 +30,8 @@ double contour_noise_mm(std::span<const double> x, std::span<const double> z, st
 // for noise whose neighbours at lag s correlate by r(s). Where V(s) no longer grows r is 0, and from there the r of the
 // smaller lags follow one by one. Shape that is not cubic over 4 s lines grows with s^8 and has no such level: then nothing
 // is known (`points` 0), as with fewer than a hundred points.
-struct ProfileNoise {
+struct ProfileNoise : ContourNoise {
     static constexpr std::size_t kLags = 6;
-    double point_mm = 0;            // contour_noise_mm
     std::array<double, kLags> r{};  // at lag 1, 2, ..
     double points = 0;              // of a fit, that know r as well
     // 1 + 2 (r_1 + ..), of what stands out of chance: of a mean, so many lines count as one.
@@ -46,8 +45,8 @@ ProfileNoise profile_noise(std::span<const double> x, std::span<const double> z,
 //   c (n - u) / (n - u c),  c = 1 + 2 (r_1 + .. + r_k),  r_j the correlation at lag j
 // (the long-run variance over that of a point; the fraction is what the fit itself takes of such residuals). A lag counts as
 // long as it and all below it stand out of chance, 1.5 / sqrt(n), at most twelve and n / 4 of them; a fit shortens each r_j by
-// about u c / n, which is given back with the profile's c. The larger c of the residuals alone and of both together; at least 1, and n / (2 u) is
-// the most that they can tell. Fewer than eight residuals, and none known: 1.
+// about u c / n, which is given back with the profile's c. The larger c of the residuals alone and of both together; at least 1,
+// and n / (2 u) is the most that they can tell. Fewer than eight residuals, and none known: 1.
 // A shape that the fit does not have leaves such residuals as well, and widens alike.
 double alike_widening(std::span<const double> residuals, int unknowns, const ProfileNoise& profile = {});
 

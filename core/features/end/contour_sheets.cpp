@@ -286,11 +286,9 @@ void ContourSheets::gather(const Profile& profile, const FeatureWindow& window, 
         segment_.push_back(marked ? profile.segment[i] : 0);
     }
     pitch_ = contour_pitch(all_x_, all_z_, scratch_);
-    const ContourNoise noise = contour_noise(all_x_, all_z_, scratch_);
-    noise_ = point_noise_ = noise.point_mm;
-    measured_apart_ = noise.measured_apart;
     profile_noise_ = profile_noise(all_x_, all_z_, scratch_);
-    lines_ = Lines(std::max(1.0, measured_apart_), kInterpolatedApart * profile_noise_.apart());
+    noise_ = profile_noise_.point_mm;
+    lines_ = Lines(std::max(1.0, profile_noise_.measured_apart), kInterpolatedApart * profile_noise_.apart());
     if (!marked)
         for (std::size_t i = 1; i < all_x_.size(); ++i) {
             const double dx = all_x_[i] - all_x_[i - 1], dz = all_z_[i] - all_z_[i - 1];

@@ -60,9 +60,7 @@ class ContourSheets {
     const std::vector<double>& z() const { return z_; }
     const std::vector<Sheet>& sheets() const { return sheets_; }
     double noise_mm() const { return noise_; }
-    double point_noise_mm() const { return point_noise_; }  // across the contour, without what its shape adds
-    double measured_apart() const { return measured_apart_; }  // ContourNoise
-    const ProfileNoise& noise() const { return profile_noise_; }
+    const ProfileNoise& noise() const { return profile_noise_; }  // without what the profile's shape adds
 
   private:
     // The limits in lines of the profile, which may lie denser than what was measured (ContourNoise).
@@ -108,7 +106,7 @@ class ContourSheets {
     std::vector<double> x_, z_;
     std::vector<Sheet> sheets_;
     ContourPitch pitch_;
-    double noise_ = 0, point_noise_ = 0, measured_apart_ = 0;
+    double noise_ = 0;
     ProfileNoise profile_noise_;
     Lines lines_;
 };

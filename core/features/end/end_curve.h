@@ -10,7 +10,8 @@
 // the line's points, or when it leaves a larger median residual than the line. Without it a robust line takes the rounded
 // end, or the flat before it, for outliers and says confidently where neither of them is.
 //
-// Noise model: equal, across the contour; neighbours may share it. Variances: v_line + min(T - 2, 1) (v_arc - v_line). Units mm, rad.
+// Noise model: equal, across the contour; neighbours may share it (contour_noise.h). Variances:
+// v_line + min(T - 2, 1) (v_arc - v_line). Units mm, rad.
 // Degenerate: fewer than 6 points, all of them in one place, or turned by more than a half circle, know no arc.
 
 #include <Eigen/Core>

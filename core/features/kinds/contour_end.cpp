@@ -113,7 +113,7 @@ class ContourEnd final : public FeatureFinder {
         }
         EndCurve curve = fit.curve;
         const bool rounded = fit.rounded;
-        const double apart = sheets_.measured_apart();
+        const double apart = sheets_.noise().measured_apart;
         const double interpolated = std::max(1.0, kEndDependent * apart);
         curve.sigma_mm *= std::sqrt(interpolated);
         curve.alike = std::max(1.0, curve.alike / interpolated);

@@ -59,6 +59,34 @@ TEST(SensorNumbers, AreThoseThatTheProfileWasMadeWith) {
     EXPECT_FALSE(sensor_numbers(Profile{}));
 }
 
+// A grid twice as fine as what was measured resolves no more than that: neither its points nor their noise are the grid's.
+TEST(SensorNumbers, OfAnInterpolatedGridAreThoseOfWhatWasMeasured) {
+    constexpr double kGrid = 0.05, kNoise = 0.02;
+    std::mt19937 random(9);
+    std::normal_distribution<double> normal(0, kNoise);
+    double pitch = 0, noise = 0;
+    constexpr int kTrials = 50;
+    for (int trial = 0; trial < kTrials; ++trial) {
+        const double begin = -20 - 2 * kGrid * std::uniform_real_distribution<>(0, 1)(random);
+        std::vector<double> z;
+        for (double x = begin; x < 21; x += 2 * kGrid) z.push_back(normal(random));
+        Profile p;
+        for (int i = 0; i < 800; ++i) {
+            const double x = -20 + kGrid * i, at = (x - begin) / (2 * kGrid);
+            const auto k = static_cast<std::size_t>(at);
+            p.x_mm.push_back(x);
+            p.z_mm.push_back(z[k] + (at - double(k)) * (z[k + 1] - z[k]));
+        }
+        ASSERT_TRUE(filter_profile(p, {}));
+        const auto n = sensor_numbers(p);
+        ASSERT_TRUE(n) << n.error().sentence();
+        pitch += n->pitch_mm / kTrials;
+        noise += n->noise_mm / kTrials;
+    }
+    EXPECT_NEAR(pitch, 2 * kGrid, 0.3 * kGrid);
+    EXPECT_NEAR(noise, std::sqrt(2.0 / 3) * kNoise, 0.2 * kNoise);
+}
+
 // At half the distance a camera's points lie half as far apart.
 TEST(SensorNumbers, OfACameraGrowWithTheDistance) {
     SensorModel model;

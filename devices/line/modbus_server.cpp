@@ -230,10 +230,23 @@ class ModbusServer : public ModbusLink {
             return modbus_reply_exception(modbus_, c.frame.data(), static_cast<unsigned>(exception)) > 0;
         const std::uint8_t function = c.frame[kHead];
         const bool writes = function == kWriteOne || function == kWriteMany;
-        if (!writes) station_.write(words_);
-        const bool sent = modbus_reply(modbus_, c.frame.data(), static_cast<int>(c.length), &mapping_) > 0;
-        if (writes) station_.hear({words_.data(), kLineWords});
-        return sent;
+        // Heard before it is acknowledged: what a PLC does next may start the part that its words were about.
+        if (writes) {
+            take_words(c.frame.data() + kHead);
+            station_.hear({words_.data(), kLineWords});
+        } else {
+            station_.write(words_);
+        }
+        return modbus_reply(modbus_, c.frame.data(), static_cast<int>(c.length), &mapping_) > 0;
+    }
+
+    // As modbus_reply() would, which does so as it answers. `pdu`: a sound request to write.
+    void take_words(const std::uint8_t* pdu) {
+        const std::uint8_t* values = pdu + (pdu[0] == kWriteOne ? 3 : 6);
+        const int count = pdu[0] == kWriteOne ? 1 : number_at(pdu + 3);
+        for (int i = 0; i < count; ++i)
+            words_[static_cast<std::size_t>(number_at(pdu + 1) + i)] =
+                static_cast<std::uint16_t>(number_at(values + 2 * i));
     }
 
     ServerSettings settings_;

@@ -10,7 +10,9 @@
 #include <functional>
 
 #include "contours.h"
+#include "core/features/contour/apex.h"
 #include "core/features/contour/line_fit.h"
+#include "core/features/gap/gap_flush.h"
 #include "core/features/kinds/feature_registry.h"
 
 namespace seamwright::test {
@@ -245,6 +247,56 @@ TEST_P(SharedNoise, ARimsCentreIsAsUnsureAsItSays) {
         covers(*finder, p, {0, -radius});
     }
     EXPECT_GT(found_, 900);
+    EXPECT_GE(within_, 0.93 * found_);
+    EXPECT_LE(within_, 0.99 * found_);
+}
+
+// Two sheets that a sensor smooths each by itself: nothing is measured between them.
+TEST_P(SharedNoise, FlushIsAsUnsureAsItSays) {
+    std::uniform_real_distribution<double> unit(0, 1);
+    GapFlushSettings settings;
+    settings.edge_skip_mm = 0.5;
+    GapFlushGauge gauge(settings);
+    for (int i = 0; i < 1000; ++i) {
+        const double pitch = 0.03 + 0.1 * unit(random_), noise = 0.01 + 0.03 * unit(random_),
+                     slope = 0.2 * (unit(random_) - 0.5), gap = 2 + 3 * unit(random_),
+                     flush = 2 * unit(random_) - 1;
+        Profile p = profile(
+            pitch, noise, [&](double x) { return slope * x; }, -12, 0);
+        const double cosine = 1 / std::hypot(1, slope);
+        const Profile other = profile(
+            pitch, noise, [&](double x) { return slope * x + flush / cosine; }, gap, gap + 12);
+        p.x_mm.insert(p.x_mm.end(), other.x_mm.begin(), other.x_mm.end());
+        p.z_mm.insert(p.z_mm.end(), other.z_mm.begin(), other.z_mm.end());
+        const GapFlush m = gauge.measure(p);
+        if (m.status != GapFlushStatus::ok) continue;
+        const double e = m.flush_mm - flush;
+        ++found_;
+        within_ += e * e < 3.841 * m.covariance(1, 1);
+    }
+    EXPECT_GT(found_, 950);
+    EXPECT_GE(within_, 0.93 * found_);
+    EXPECT_LE(within_, 0.99 * found_);
+}
+
+// Flanks flatter than 45 degrees: of the apex's two directions the one along the stripe is the worse.
+TEST_P(SharedNoise, AnApexIsAsUnsureAsItSays) {
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (int i = 0; i < 1000; ++i) {
+        const double half = 150 + 200 * unit(random_), height = half * (0.6 + 0.3 * unit(random_));
+        const Eigen::Vector2d tip(600 + 80 * unit(random_), 300 + 100 * unit(random_));
+        const Profile p = profile(
+            1, 0.1 + 0.4 * unit(random_),
+            [&](double x) { return tip.y() + std::min(height, height * std::abs(x - tip.x()) / half); }, 0,
+            1279);
+        std::vector<Eigen::Vector2d> points;
+        for (std::size_t k = 0; k < p.size(); ++k) points.emplace_back(p.x_mm[k], p.z_mm[k]);
+        const auto apex = find_apex(points);
+        if (!apex) continue;
+        ++found_;
+        within_ += std::abs(apex->point.x() - tip.x()) < 1.96 * apex->sigma;
+    }
+    EXPECT_GT(found_, 950);
     EXPECT_GE(within_, 0.93 * found_);
     EXPECT_LE(within_, 0.99 * found_);
 }

@@ -167,8 +167,8 @@ double alike_widening(std::span<const double> residuals, int unknowns, const Pro
             both_goes_on && lag <= profile.r.size() && mean > kByChance / std::sqrt(weight + profile.points);
         if (both_goes_on) both += 2 * std::min(mean, 1.0);
     }
-    const double c = std::min(std::max(own, both), std::max(n / (2.0 * unknowns), 1.0));
-    return c * (n - unknowns) / (n - unknowns * c);
+    const double c = std::min(std::max(own, both), std::max(n / unknowns, 1.0));
+    return c * (n - unknowns) / (n - unknowns * std::min(c, std::max(n / (2.0 * unknowns), 1.0)));
 }
 
 PooledSigma pooled_sigma(double sigma_mm, int freedom, const ProfileNoise& profile) {

@@ -42,11 +42,11 @@ ProfileNoise profile_noise(std::span<const double> x, std::span<const double> z,
 
 // Factor of the variances that a least-squares fit of `unknowns` parameters states for independent points, from its
 // residuals in contour order and from what the profile knows beside them:
-//   c (n - u) / (n - u c),  c = 1 + 2 (r_1 + .. + r_k),  r_j the correlation at lag j
+//   c (n - u) / (n - u min(c, n / 2 u)),  c = 1 + 2 (r_1 + .. + r_k),  r_j the correlation at lag j
 // (the long-run variance over that of a point; the fraction is what the fit itself takes of such residuals). A lag counts as
 // long as it and all below it stand out of chance, 1.5 / sqrt(n), at most twelve and n / 4 of them; a fit shortens each r_j by
 // about u c / n, which is given back with the profile's c. The larger c of the residuals alone and of both together; at least 1,
-// and n / (2 u) is the most that they can tell. Fewer than eight residuals, and none known: 1.
+// and n / u is the most that they can tell. Fewer than eight residuals, and none known: 1.
 // A shape that the fit does not have leaves such residuals as well, and widens alike.
 double alike_widening(std::span<const double> residuals, int unknowns, const ProfileNoise& profile = {});
 

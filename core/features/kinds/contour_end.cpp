@@ -14,11 +14,13 @@
 // Its covariance, along the tangent at the point and across it. Noise model: independent, equal, across the
 // contour, its sigma from the fit's residuals, and not below what the profile's noise beside them makes likely; of
 // interpolated points 1.5 f times the variance, or what the residuals' likeness says (contour_noise.h).
-//     across   v + (k h^2 / 2)^2 + e^2,   v that of the curve there, h = r - q / 2, k its curvature
+//     across   v + (k h^2 / 2)^2 + e^2 + d^2,   v that of the curve there, h = r - q / 2, k its curvature
 //     along    (r^2 - 2 f p^2) / 12 + (r - q)^2 / 4 + noise^2
 // k h^2 / 2: beyond the last point the contour may bend on or go on straight. e, other shape than an
 // arc: the larger of the residuals' cubic part at the point, without what noise makes of it, and the
-// distance of the last point when the mean of the last three is more than 2.5 sigma / sqrt(3) off.
+// distance of the last point when the mean of the last three is more than 2.5 sigma / sqrt(3) off. d: a sensor that gives
+// means of neighbours (ProfileNoise::apart()) has at the end only such of points inwards, which draws the curve that way where
+// the contour slopes; and on a bend every one lies k (m p)^2 / 6 on the inner side, of m points on either side.
 // The end is spread evenly over the reach r from the last point on. A plain end: r = q = p, hence p^2 / 12; an interpolated
 // one is spread over p and over f p, narrower than evenly over both. Else the largest of
 //     - the last two steps, when longer than 1.5 p and than noise makes them: returns are missing there;
@@ -67,6 +69,7 @@ constexpr int kEndDoubtfulLines = 6;
 constexpr double kEndBeside = 3;  // pitches
 // Interpolated between points that were measured f pitches apart, n of them are worth n / (1.5 f).
 constexpr double kEndDependent = 1.5;
+constexpr double kEndAlone = 0.25;  // points on either side: less is no mean
 constexpr double kEndMisfit = 2.5;  // sigma of the last points' mean
 constexpr double kEndFull = 0.75;   // of the intensities' upper quartile: as bright as before the end
 
@@ -138,7 +141,8 @@ class ContourEnd final : public FeatureFinder {
         const double bend = 0.5 * curve.curvature * continued * continued;
         const Eigen::Vector4d powers(1, s, s * s, s * s * s);
         const double misfit = std::max(std::abs(curve.cubic_misfit.dot(powers)), end_misfit(curve));
-        const double across = curve.variance_at(s) + bend * bend + misfit * misfit;
+        const double skew = drawn_off(curve, pitch, s);
+        const double across = curve.variance_at(s) + bend * bend + misfit * misfit + skew * skew;
         const double along =
             (reach * reach - 2 * pitch * measured) / 12 + (reach - step) * (reach - step) / 4 + noise * noise;
         feature.covariance_mm2 = across * normal * normal.transpose() + along * tangent * tangent.transpose();
@@ -194,6 +198,22 @@ class ContourEnd final : public FeatureFinder {
         for (std::size_t i = 1; i + 1 < fit_x_.size(); ++i)
             scratch_.push_back(std::abs(fit_x_[i - 1] - 2 * fit_x_[i] + fit_x_[i + 1]));
         return scratch_.size() < kEndFewestSteps ? 0 : kMadToSigma * median(scratch_) / std::sqrt(6.0);
+    }
+
+    // How far across the curve the point at s is drawn off by means of neighbours: those at the end are of points inwards
+    // alone, and on a bend every one lies on the inner side.
+    double drawn_off(const EndCurve& curve, double pitch, double s) const {
+        const double half = 0.5 * (sheets_.noise().apart() - 1);  // points on either side that a mean is of
+        if (!(half > kEndAlone)) return 0;
+        const Eigen::Vector3d weights = curve.cofactor * Eigen::Vector3d(1, s, s * s);
+        double off = 0;
+        for (std::size_t i = 0; double(i) < half && i < fit_x_.size(); ++i) {
+            const double at = curve.along(point(i)), inwards = 0.5 * (half - double(i)) * pitch;
+            const Eigen::Vector2d tangent = curve.tangent(at);
+            off +=
+                weights.dot(Eigen::Vector3d(1, at, at * at)) * inwards * std::abs(tangent.x() * tangent.y());
+        }
+        return std::hypot(off, curve.curvature * half * half * pitch * pitch / 6);
     }
 
     // Twice the way from the last point to the middle of what may hold the end: the pitch; where points stand in the

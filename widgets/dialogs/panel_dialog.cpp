@@ -190,8 +190,16 @@ void PanelDialog::listen() {
     });
     connect(&desk_, &Desk::project_changed, this, [this] {
         fill_jobs();
-        if (waiting_ == Deed::none && basis() != basis_) forget();
-        if (waiting_ == Deed::none) show_standing();
+        if (waiting_ != Deed::none) return;
+        // What a deed said stays while nothing changes that it rests on.
+        if (std::string now = basis(); now != basis_) {
+            basis_ = std::move(now);
+            forget();
+            show_standing();
+        } else {
+            show_sensitivity();
+            show_deeds();
+        }
     });
     connect(&worker, &StationWorker::confirm_panel, this,
             [this](const std::shared_ptr<const RunRecord>& judged) { ask_to_push(*judged); });
@@ -215,13 +223,7 @@ void PanelDialog::listen() {
         }
         set_verdict(*verdict_, text, Tone::plain);
     });
-    connect(&worker, &StationWorker::busy_changed, this, [this](bool busy) {
-        if (!busy && !desk_.worker().busy() && waiting_ != Deed::none) {
-            waiting_ = Deed::none;  // it was dropped before it began
-            show_standing();
-        }
-        show_deeds();
-    });
+    connect(&worker, &StationWorker::busy_changed, this, &PanelDialog::show_deeds);
 }
 
 const PanelJob* PanelDialog::job() const {
@@ -244,6 +246,9 @@ std::string PanelDialog::basis() const {
     Project rests_on;
     rests_on.sensors = project.sensors;
     rests_on.robots = project.robots;
+    // Told by a device once it is asked, at any time.
+    for (SensorSetup& sensor : rests_on.sensors) sensor.identity = {};
+    for (RobotSetup& robot : rests_on.robots) robot.identity = {};
     rests_on.calibrations = project.calibrations;
     if (const PanelJob* chosen = job()) {
         rests_on.panel_jobs = {*chosen};

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <QAction>
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 #include "app/studio/studio.h"
 #include "devices/exchange/pose_json.h"
@@ -336,6 +338,25 @@ TEST_F(PanelWindow, SaysWhyAJobIsRefused) {
     desk().worker().drive_gap({});
     ASSERT_TRUE(wait([&] { return idle(); }));
     EXPECT_EQ(word(d), before);
+}
+
+// A busy window hears late of a deed before: that its own has ended as well by then is no reason to drop what came of it.
+TEST_F(PanelWindow, SaysWhatCameOfADeedThatEndsBeforeTheWindowHearsOfTheOneBefore) {
+    make_project();
+    PanelDialog& d = *opened();
+    teach(d);
+    displace();
+    ASSERT_TRUE(
+        desk().edit_project([](Project& p) { p.panel_jobs[0].limits.translation_mm = 0.5; }, "limit"));
+    ASSERT_TRUE(wait([&] { return idle() && button(d, "panel_fit")->isEnabled(); }));
+    desk().worker().search_cameras();
+    QTest::mouseClick(button(d, "panel_fit"), Qt::LeftButton);
+    ASSERT_TRUE(under_way(d));
+    while (desk().worker().busy()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    ASSERT_TRUE(wait([&] { return !under_way(d); }));
+    const RunRecord run = last_run();
+    ASSERT_FALSE(run.panel->refusals.empty());
+    EXPECT_THAT(word(d), HasSubstr(run.panel->refusals.front().english()));
 }
 
 TEST_F(PanelWindow, TakesJobsFromFilesAndSaysWhatIsWrongWithThem) {

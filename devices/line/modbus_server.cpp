@@ -174,12 +174,11 @@ class ModbusServer : public ModbusLink {
         read_head(c);
     }
 
-    void close(const Shared& taken) {
-        const Shared c = taken;  // `taken` may be the list's own
+    void close(const Shared& c) {
         error_code ignored;
         c->timer.cancel();
         c->socket.close(ignored);
-        connections_.remove(c);
+        connections_.remove(c);  // may be the list's own: not used from here on
         connected_ = !connections_.empty();
     }
 

@@ -137,7 +137,8 @@ void PanelDialog::take_run(std::shared_ptr<const MeasuredPanel> panel) {
     if (std::exchange(waiting_, Deed::none) == Deed::none) return;
     asking_->hide();
     answer_ = nullptr;
-    const bool stale = basis() != basis_;
+    const std::string before = std::exchange(basis_, basis());
+    const bool stale = before != basis_;
     if (!stale) shown_ = std::move(panel);
     show_standing();
     if (stale)
@@ -183,6 +184,7 @@ void PanelDialog::keep_taught(const PanelJob& taught) {
 
 void PanelDialog::fail(const QString& sentence) {
     if (std::exchange(waiting_, Deed::none) == Deed::none) return;
+    basis_ = basis();
     asking_->hide();
     answer_ = nullptr;
     show_standing();

@@ -10,8 +10,8 @@
 //
 // Covariance: sigma^2 (J^T J)^-1 of the centre, sigma from the residuals and the profile's noise, widened where neighbours
 // are alike (contour_noise.h). On a short arc the centre is hardly determined along the arc's bisector (with a free radius
-// the variance grows with the inverse fourth power of the arc): below minimum_arc_deg, or when the centre's sigma exceeds a tenth of the radius, the answer is
-// ill_conditioned.
+// the variance grows with the inverse fourth power of the arc): below minimum_arc_deg, or when the centre's sigma exceeds a
+// tenth of the radius, the answer is ill_conditioned.
 
 #include <fmt/format.h>
 

@@ -147,6 +147,16 @@ class PanelWindow : public testing::Test {
             most = std::max({most, std::abs(o.gap_mm), std::abs(o.flush_mm)});
         return most;
     }
+    // Taught, displaced, and to be refused by the job's own limit.
+    PanelDialog* displaced_beyond_its_limit() {
+        make_project();
+        PanelDialog* d = opened();
+        teach(*d);
+        displace();
+        EXPECT_TRUE(
+            desk().edit_project([](Project& p) { p.panel_jobs[0].limits.translation_mm = 0.5; }, "limit"));
+        return d;
+    }
     RunRecord last_run() {
         const auto runs = desk().runs();
         EXPECT_TRUE(runs && !runs->empty());
@@ -310,12 +320,7 @@ TEST_F(PanelWindow, ClosingItWhileTheQuestionStandsIsANo) {
 }
 
 TEST_F(PanelWindow, SaysWhyAJobIsRefused) {
-    make_project();
-    PanelDialog& d = *opened();
-    teach(d);
-    displace();
-    ASSERT_TRUE(
-        desk().edit_project([](Project& p) { p.panel_jobs[0].limits.translation_mm = 0.5; }, "limit"));
+    PanelDialog& d = *displaced_beyond_its_limit();
     click(d, "panel_fit");
     ASSERT_TRUE(wait([&] { return !under_way(d); }));
     EXPECT_FALSE(asked(d));
@@ -342,12 +347,7 @@ TEST_F(PanelWindow, SaysWhyAJobIsRefused) {
 
 // A busy window hears late of a deed before: that its own has ended as well by then is no reason to drop what came of it.
 TEST_F(PanelWindow, SaysWhatCameOfADeedThatEndsBeforeTheWindowHearsOfTheOneBefore) {
-    make_project();
-    PanelDialog& d = *opened();
-    teach(d);
-    displace();
-    ASSERT_TRUE(
-        desk().edit_project([](Project& p) { p.panel_jobs[0].limits.translation_mm = 0.5; }, "limit"));
+    PanelDialog& d = *displaced_beyond_its_limit();
     ASSERT_TRUE(wait([&] { return idle() && button(d, "panel_fit")->isEnabled(); }));
     desk().worker().search_cameras();
     QTest::mouseClick(button(d, "panel_fit"), Qt::LeftButton);

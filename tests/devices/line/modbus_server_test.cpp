@@ -121,6 +121,17 @@ TEST_F(ModbusServer, AnotherProgramCallsForAPart) {
     EXPECT_EQ(read("-r 102 -c 3 -t 4"), (std::map<int, long long>{{102, 1}, {103, 0}, {104, 0}}));
 }
 
+// The robot's call may follow at once.
+TEST_F(ModbusServer, WhatIsAcknowledgedIsTaken) {
+    serve({{"start", "robot"}});
+    TcpConnection c = connect();
+    for (int n = 1; n <= 2000; ++n) {
+        const std::string write = frame(bytes({6, 0, 5, n >> 8, n & 0xff}));
+        ASSERT_EQ(ask(c, write), write);
+        ASSERT_EQ(link->take_announced().number, static_cast<unsigned>(n));
+    }
+}
+
 TEST_F(ModbusServer, WhatIsNotAllowedGetsItsException) {
     serve();
     EXPECT_THAT(mbpoll("-r 100 -t 4", "1").text, HasSubstr("Illegal data address"));

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/features/contour/contour_model.h"
+#include "core/features/contour/contour_pitch.h"
 #include "core/features/contour/contour_noise.h"
 #include "core/features/feature.h"
 

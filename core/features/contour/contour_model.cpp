@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "core/features/contour/contour_noise.h"
-#include "core/median.h"
 
 namespace seamwright {
 namespace {
@@ -33,61 +32,7 @@ struct WindowSums {
 
 }  // namespace
 
-bool ContourPitch::is_wall(double dx, double dz) const {
-    return std::hypot(dx, dz) > 5 * distance && std::abs(dx) <= 3.5 * along_x;
-}
-
-bool ContourPitch::is_gap(double dx, double dz) const {
-    return std::hypot(dx, dz) > 6 * distance && std::abs(dx) > 3.5 * along_x;
-}
-
-bool ContourPitch::is_step(std::span<const double> x, std::span<const double> z, std::size_t at,
-                           double sigma_mm) const {
-    constexpr double kLeast = 2.5, kLeastSigmas = 8, kLevel = 0.35;
-    if (at < 1 || at + 2 >= x.size()) return false;
-    const double dx = x[at + 1] - x[at], rise = std::abs(z[at + 1] - z[at]);
-    return rise > kLeastSigmas * sigma_mm && std::hypot(dx, rise) > kLeast * distance &&
-           std::abs(dx) <= 3.5 * along_x && std::abs(z[at] - z[at - 1]) < kLevel * rise &&
-           std::abs(z[at + 2] - z[at + 1]) < kLevel * rise;
-}
-
-int ContourPitch::mixed(std::span<const double> x, std::span<const double> z, std::size_t at,
-                        double sigma_mm) const {
-    constexpr double kLeast = 3.5, kLeastSigmas = 10, kLevel = 0.2;
-    for (std::size_t many = 1; many <= 2; ++many) {
-        if (at < 3 || at + many + 2 >= x.size()) return 0;
-        const std::size_t a = at - 1, b = at + many;
-        const double rise = z[b] - z[a], least = std::max(kLeastSigmas * sigma_mm, kLeast * distance);
-        if (std::abs(rise) < least || std::abs(x[b] - x[a]) > (1.5 + double(many)) * along_x) continue;
-        const double level = kLevel * std::abs(rise);
-        if (std::abs(z[a] - z[a - 1]) > level || std::abs(z[a] - z[a - 2]) > level ||
-            std::abs(z[b + 1] - z[b]) > level || std::abs(z[b + 2] - z[b]) > level)
-            continue;
-        const double margin = std::max(4 * sigma_mm, 0.08 * std::abs(rise));
-        bool between = true;
-        for (std::size_t k = at; k < b; ++k) {
-            const double up = (z[k] - z[a]) * (rise > 0 ? 1 : -1);
-            between = between && up > margin && up < std::abs(rise) - margin && (z[k] - z[k - 1]) * rise > 0;
-        }
-        if (between) return static_cast<int>(many);
-    }
-    return 0;
-}
-
-ContourPitch contour_pitch(std::span<const double> x, std::span<const double> z,
-                           std::vector<double>& scratch) {
-    ContourPitch pitch;
-    scratch.clear();
-    for (std::size_t i = 1; i < x.size(); ++i) scratch.push_back(std::abs(x[i] - x[i - 1]));
-    pitch.along_x = median(scratch);
-    scratch.clear();
-    for (std::size_t i = 1; i < x.size(); ++i)
-        scratch.push_back(std::hypot(x[i] - x[i - 1], z[i] - z[i - 1]));
-    pitch.distance = median(scratch);
-    return pitch;
-}
-
-void ContourModel::build(const Profile& profile) {
+void ContourModel::build(const Profile& profile, double shared, double sigma_mm) {
     x_.clear();
     z_.clear();
     edges_.clear();
@@ -113,7 +58,10 @@ void ContourModel::build(const Profile& profile) {
     if (!(extent_ > 0) || !std::isfinite(extent_)) return;
     pitch_ = contour_pitch(x_, z_, scratch_);
     if (!(pitch_.distance > 0)) return;
-    sigma_ = std::max(contour_noise_mm(x_, z_, scratch_), kSmallestSigma_mm);
+    const ProfileNoise noise = profile_noise(x_, z_, scratch_);
+    sigma_ = std::max(noise.point_mm, kSmallestSigma_mm);
+    pitch_.shared = shared > 0 ? shared : noise.apart();
+    if (pitch_.alike() > 1) sigma_ = std::max({sigma_, noise.alone_mm, sigma_mm});
 
     // Points within a step are no part of the contour.
     const std::vector<double> all_x = x_, all_z = z_;
@@ -268,7 +216,9 @@ void ContourModel::fit_edges() {
                         if (residual2 > variance * (dof + 2.5 * std::sqrt(2 * dof))) break;
                         // The next order must not be seen above the noise: it is what would bend the fit. A
                         // line, where it does, has four ninths of the parabola's variance.
-                        if (bend > (degree == 1 ? kLineBend : kParabolaBend) * sigma_) continue;
+                        if (bend >
+                            (degree == 1 ? kLineBend : kParabolaBend) * sigma_ * std::sqrt(pitch_.alike()))
+                            continue;
                         here = true;
                         (degree == 2 ? parabola : straight) = true;
                         if (degree == 2) bent = edge, bent_residual2 = residual2;

@@ -8,37 +8,19 @@
 // tilt by noise / pitch and bring information along the contour that is not there) while corners stay sharp.
 // Fits run over the point number, x and z apart, so every window costs the same: sums come from running sums.
 //
-// Noise model: independent noise of equal size on every point, across the contour, estimated from the fits'
-// residuals. A fitted value is a linear function of the window's points with known weights, which is what
+// Noise model: noise of equal size on every point, across the contour, estimated from the fits' residuals; each point's
+// its own, or shared by neighbours (ContourPitch::alike()), whose waves are then no bends of the contour. A fitted value is a linear function of the window's points with known weights, which is what
 // lets the registration propagate the noise of a recorded template.
 
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
+#include "core/features/contour/contour_pitch.h"
 #include "core/profile/profile.h"
 
 namespace seamwright {
-
-// Gaps: where two neighbours are no neighbours on the surface.
-struct ContourPitch {
-    double along_x = 0;   // median |dx| of neighbours
-    double distance = 0;  // median distance of neighbours
-    // A jump seen at one place of the line (a wall or an overhang): far apart, but neighbours in x.
-    bool is_wall(double dx, double dz) const;
-    // Missing returns, or a jump to another part: nothing is known in between.
-    bool is_gap(double dx, double dz) const;
-    // A step that is too low for a wall, between neighbours `at` and `at` + 1: more than eight sigma, and level on
-    // either side of it, as no flank and no rounded rim is.
-    bool is_step(std::span<const double> x, std::span<const double> z, std::size_t at, double sigma_mm) const;
-    // How many points from `at` on (one or two) stand in such a step: the light of its edge falls on both sheets, or a
-    // resampling has drawn a line between them. They lie on neither.
-    int mixed(std::span<const double> x, std::span<const double> z, std::size_t at, double sigma_mm) const;
-};
-ContourPitch contour_pitch(std::span<const double> x, std::span<const double> z,
-                           std::vector<double>& scratch);
 
 class ContourModel {
   public:
@@ -68,7 +50,8 @@ class ContourModel {
 
     // Uses the points that are finite and not marked as outliers. At least 5 points with extent are a
     // precondition of use (`usable()` tells).
-    void build(const Profile& profile);
+    // `shared` (ContourPitch's) and the points' noise, where a longer profile of the sensor knows them; 0: from the points.
+    void build(const Profile& profile, double shared = 0, double sigma_mm = 0);
     bool usable() const { return edges_.size() >= 4; }
 
     // All coordinates are relative to `origin()`, the centroid of the points: a contour far from the frame's

@@ -105,14 +105,16 @@ ProfileNoise profile_noise(std::span<const double> x, std::span<const double> z,
     if (x.size() < kLikenessPoints) return like;
     const std::size_t stride = std::max<std::size_t>(x.size() / kLikenessMost, 1);
     std::array<double, kMost + 1> v{};
-    for (std::size_t s = 1; s <= kMost; ++s) {
-        const double sigma = difference_noise_mm(x, z, scratch, s, stride);
-        v[s] = sigma * sigma;
-    }
+    std::size_t told = 0;
+    const auto tell = [&](std::size_t upto) {  // most profiles stand still at once
+        for (; told < upto; ++told)
+            v[told + 1] = std::pow(difference_noise_mm(x, z, scratch, told + 1, stride), 2);
+    };
     const double step = std::abs(x.back() - x.front()) / double(x.size() - 1);
     // The first lag from which on V stands still.
     std::size_t level = 1;
     const auto still = [&](std::size_t s) {
+        tell(s + kLevelApart);
         return v[s + kLevelApart] < kLevel * v[s] && v[s + 1] < kLevel * v[s];
     };
     while (level + kLevelApart < kMost && !still(level)) ++level;
@@ -120,6 +122,7 @@ ProfileNoise profile_noise(std::span<const double> x, std::span<const double> z,
     const double whole = (v[level] + v[level + 1] + v[level + 2]) / 3;
     if (!(whole > std::pow(kLikenessNoise * step, 2))) return like;
     like.points = double(x.size()) / double(stride) / kShared;
+    like.alone_mm = std::sqrt(whole);
     const auto r = [&](std::size_t lag) {
         return lag <= level && lag <= like.r.size() ? like.r[lag - 1] : 0.0;
     };

@@ -34,6 +34,7 @@ struct ProfileNoise : ContourNoise {
     static constexpr std::size_t kLags = 6;
     std::array<double, kLags> r{};  // at lag 1, 2, ..
     double points = 0;              // of a fit, that know r as well
+    double alone_mm = 0;            // of a point, none of it hidden by neighbours that share it; 0: not known
     // 1 + 2 (r_1 + ..), of what stands out of chance: of a mean, so many lines count as one.
     double apart() const;
 };

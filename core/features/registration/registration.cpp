@@ -37,6 +37,7 @@ Expected<ContourMatcher> ContourMatcher::make(const Profile& contour, const Eige
         return input_error("the template's reference point is not finite", "template",
                            "give two numbers in mm");
     auto impl = std::make_unique<Impl>();
+    impl->contour = contour;
     impl->model.build(contour);
     if (impl->model.x().size() < static_cast<std::size_t>(kFewestRegistrationPoints))
         return input_error("the template has fewer than 5 usable points", "template",
@@ -45,35 +46,53 @@ Expected<ContourMatcher> ContourMatcher::make(const Profile& contour, const Eige
         return input_error("the template has no extent: its points do not form a contour", "template",
                            "take a piece of contour some millimetres long");
     impl->reference = reference_mm;
-    double length = 0;
-    for (const auto& edge : impl->model.edges()) {
-        impl->arc.push_back(length);
-        if (!edge.wall) length += 2 * edge.half;
-    }
-    if (!(length > 0))
+    if (!impl->learn())
         return input_error("the template has no connected piece of contour", "template",
                            "take points in sensor order");
-    const auto& tx = impl->model.x();
-    const auto& tz = impl->model.z();
-    for (std::size_t e = 0; e < impl->model.edges().size(); ++e) {
-        const auto& edge = impl->model.edges()[e];
+    return ContourMatcher(std::move(impl));
+}
+
+bool ContourMatcher::Impl::learn() {
+    arc.clear();
+    jumps.clear();
+    double length = 0;
+    for (const auto& edge : model.edges()) {
+        arc.push_back(length);
+        if (!edge.wall) length += 2 * edge.half;
+    }
+    if (!(length > 0)) return false;
+    const auto& tx = model.x();
+    const auto& tz = model.z();
+    const int most = static_cast<int>(tx.size()) - 1;
+    const double most_open = model.pitch().most_open();
+    for (std::size_t e = 0; e < model.edges().size(); ++e) {
+        const auto& edge = model.edges()[e];
         if (!edge.wall) continue;
-        const int most = static_cast<int>(tx.size()) - 1;
         const bool rising = tz[edge.point + 1] > tz[edge.point];
         JumpEnd end = jump_end(tx, tz, rising ? edge.point : edge.point + 1,
-                               rising ? edge.point + 1 : edge.point, 0, most, impl->model.sigma_mm());
-        end.outline = outline_at(tx, tz, edge.point, 0, most, impl->model.sigma_mm());
-        if (impl->sampled_wall(e)) end.is_edge = false;
-        impl->jumps.push_back(end);
+                               rising ? edge.point + 1 : edge.point, 0, most, model.sigma_mm(), most_open);
+        end.outline = outline_at(tx, tz, edge.point, 0, most, model.sigma_mm());
+        if (sampled_wall(e)) end.is_edge = false;
+        jumps.push_back(end);
     }
-    for (std::size_t i = 0; i + 1 < tx.size(); ++i)
-        if (impl->model.pitch().is_gap(tx[i + 1] - tx[i], tz[i + 1] - tz[i]))
-            gap_ends(tx, tz, static_cast<int>(i), 0, static_cast<int>(tx.size()) - 1, impl->model.sigma_mm(),
-                     impl->jumps);
-    impl->learn_directions();
-    impl->search.prepare(impl->model);
-    impl->finder = impl->search;
-    return ContourMatcher(std::move(impl));
+    for (int i = 0; i < most; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        if (model.pitch().is_gap(tx[at + 1] - tx[at], tz[at + 1] - tz[at]))
+            gap_ends(tx, tz, i, 0, most, model.sigma_mm(), most_open, jumps);
+    }
+    learn_directions();
+    search.prepare(model);
+    finder = search;
+    return true;
+}
+
+void ContourMatcher::Impl::share_noise() {
+    constexpr double kOther = 1;  // lines
+    if (!(scene.pitch.alike() > 1) || std::abs(scene.pitch.shared - model.pitch().shared) <= kOther) return;
+    model.build(contour, scene.pitch.shared, scene.sigma_mm);
+    if (model.usable() && learn()) return;
+    model.build(contour, 1);
+    learn();
 }
 
 bool ContourMatcher::Impl::within(const SearchWindow& window, const CentredPose& pose) const {
@@ -179,6 +198,7 @@ Registration ContourMatcher::match(const Profile& profile, const SearchWindow& w
         result.status = RegistrationStatus::no_points;
         return result;
     }
+    impl_->share_noise();
     m.search_places(window);
     result.status = RegistrationStatus::no_match;
     result.iterations = m.iterations;

@@ -41,6 +41,7 @@ inline RegistrationRow registration_row(const ContourModel::Edge& edge, double u
 }
 
 struct ContourMatcher::Impl {
+    Profile contour;  // as given to make()
     ContourModel model;
     RegistrationSearch search;
     Eigen::Vector2d reference = Eigen::Vector2d::Zero();
@@ -242,8 +243,16 @@ struct ContourMatcher::Impl {
     // Of the twist; `apart`: a direction that the points hold, not the slopes, with its variance.
     Eigen::Matrix3d twist_covariance(const NormalEquations& normal, const Weakest& weak,
                                      const Held& apart) const;
+    // What the partners leave, over stretches of the contour, beyond what noise makes of them (mm^2): the shape is a little
+    // another one, and nobody knows which part of it is where it was taught.
+    double misfit_variance() const;  // of `matches`
     Registration conclude(const Finish& finish, const Support& support, double sigma) const;
 
+    // What follows from the model. False: it has no length.
+    bool learn();
+    // The scene is longer than the template and knows better how far its points are means of several: the template is read
+    // anew with it.
+    void share_noise();
     // False: fewer points than the least within reach of the window.
     bool gather(const Profile& profile, const SearchWindow& window) const;
     void search_places(const SearchWindow& window) const;  // fills `finishes`

@@ -102,19 +102,24 @@ void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin, c
         solid_x_.push_back(x[i]);
         solid_z_.push_back(z[i]);
     }
-    sigma_mm = contour_noise_mm(solid_x_, solid_z_, scratch_);
+    const ProfileNoise noise = profile_noise(solid_x_, solid_z_, scratch_);
+    sigma_mm = noise.point_mm;
+    pitch.shared = noise.apart();
+    if (pitch.alike() > 1) sigma_mm = std::max(sigma_mm, noise.alone_mm);
     leave_out_mixed();
     jumps.clear();
     const int solid = static_cast<int>(solid_x_.size());
     for (int i = 0; i + 1 < solid; ++i) {
         const double dx = solid_x_[i + 1] - solid_x_[i], dz = solid_z_[i + 1] - solid_z_[i];
-        if (pitch.is_gap(dx, dz) && gap_ends(solid_x_, solid_z_, i, 0, solid - 1, sigma_mm, jumps)) continue;
+        if (pitch.is_gap(dx, dz) &&
+            gap_ends(solid_x_, solid_z_, i, 0, solid - 1, sigma_mm, pitch.most_open(), jumps))
+            continue;
         if (!pitch.is_wall(dx, dz) &&
             !pitch.is_step(solid_x_, solid_z_, static_cast<std::size_t>(i), sigma_mm))
             continue;
         const bool rising = solid_z_[i + 1] > solid_z_[i];
-        JumpEnd end =
-            jump_end(solid_x_, solid_z_, rising ? i : i + 1, rising ? i + 1 : i, 0, solid - 1, sigma_mm);
+        JumpEnd end = jump_end(solid_x_, solid_z_, rising ? i : i + 1, rising ? i + 1 : i, 0, solid - 1,
+                               sigma_mm, pitch.most_open());
         end.outline = outline_at(solid_x_, solid_z_, i, 0, solid - 1, sigma_mm);
         jumps.push_back(end);
     }

@@ -25,7 +25,7 @@ constexpr float kContradicted = 1e6F;
 
 void ContourMatcher::Impl::learn_directions() {
     const double half = 0.5 * model.extent_mm(), pitch = model.pitch().along_x;
-    const double variance = model.sigma_mm() * model.sigma_mm();
+    const double variance = model.sigma_mm() * model.sigma_mm() * model.pitch().alike();
     const Eigen::Vector3d scale(1, 1, 1 / half);
     bins = std::clamp(static_cast<int>(model.length_mm() / (0.5 * model.pitch().distance)), 1, kMostBins);
     const double bin = model.length_mm() / bins;
@@ -183,6 +183,11 @@ ContourMatcher::Impl::Support ContourMatcher::Impl::support(const Finish& found,
         for (const JumpMatch& j : jump_matches)
             result.cost += std::min(kMissing, j.residual * j.residual / j.variance);
     }
+    // Points that share their noise speak as one.
+    const double alike = std::max(scene.pitch.alike(), model.pitch().alike());
+    result.contradicted /= alike;
+    result.cost /= alike;
+    result.missing /= alike;
     result.share = double(marked) / bins;
     for (int k = 0; k < 3; ++k)
         result.informed[k] = directions[k].determined ? met[k] / directions[k].information : 1;

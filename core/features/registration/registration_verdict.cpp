@@ -283,7 +283,7 @@ ContourMatcher::Impl::Weakest ContourMatcher::Impl::weakest(const CentredPose& p
             if (tx * edge.tx + tz * edge.tz < 0) tx = -tx, tz = -tz;
             const double qx = edge.cx + m.foot.u * edge.tx, qz = edge.cz + m.foot.u * edge.tz;
             c.of_scene = {tz, -tx, -(tz * qz + tx * qx)};
-            c.scene_doubt = noise.mean_square * noise.relative(edge) * slope.variance;
+            c.scene_doubt = noise.mean_square * noise.relative(edge) * slope.variance * scene.pitch.alike();
             c.count = slope.count;
         }
         common += 0.5 * (c.of_template * c.of_scene.transpose() + c.of_scene * c.of_template.transpose());
@@ -345,6 +345,31 @@ Eigen::Matrix3d ContourMatcher::Impl::twist_covariance(const NormalEquations& no
     Eigen::Matrix3d covariance = solved * normal.gradient * solved.transpose();
     if (apart.held) covariance += apart.variance * weak.twist * weak.twist.transpose();
     return covariance;
+}
+
+double ContourMatcher::Impl::misfit_variance() const {
+    constexpr std::size_t kBlock = 10;
+    constexpr double kStandsOut = 3.5;  // sigma of its scatter by chance
+    const double alike = std::max(scene.pitch.alike(), model.pitch().alike());
+    const double of_scene = scene.sigma_mm * scene.sigma_mm * alike,
+                 of_template = model.sigma_mm() * model.sigma_mm() * alike;
+    const auto many = static_cast<std::size_t>(std::ceil(kBlock * alike));
+    double beyond = 0, scatter = 0;
+    int blocks = 0;
+    for (std::size_t first = 0; first + many <= matches.size(); first += many) {
+        double sum = 0, curve = 0;
+        for (std::size_t i = first; i < first + many; ++i) {
+            const Match& m = matches[i];
+            sum += m.foot.residual;
+            curve += model.weights(model.edges()[m.foot.edge], m.foot.u).value_variance;
+        }
+        const auto n = static_cast<double>(many);
+        const double by_chance = of_scene / n + of_template * curve / n;
+        beyond += sum * sum / (n * n) - by_chance;
+        scatter += 2 * by_chance * by_chance;
+        ++blocks;
+    }
+    return beyond > kStandsOut * std::sqrt(scatter) ? beyond / blocks : 0;
 }
 
 Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& rating, double sigma) const {
@@ -415,6 +440,7 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
     to_scene(0, 2) = turned.y();
     to_scene(1, 2) = -turned.x();
     result.covariance = to_scene * twist_covariance(normal, weak, place) * to_scene.transpose();
+    result.covariance.topLeftCorner<2, 2>().diagonal().array() += misfit_variance();
 
     const bool scatter = rating.off > kBesideTemplate * rating.on || result.rms_mm > kFillsGate * rating.gate;
     // What fixes a direction must be there, or it is not known in it, however well the rest fits. Where most

@@ -7,7 +7,6 @@
 namespace seamwright {
 namespace {
 
-constexpr double kMostOpen = 3.5;  // pitches
 // Cosine of the steepest surface whose end is an edge: a rounded one ends for the sensor where it gets too steep to be
 // seen, which is another place of it at another turn.
 constexpr double kSteepest = 0.6;
@@ -112,7 +111,7 @@ SheetOutline outline_at(const std::vector<double>& x, const std::vector<double>&
 }
 
 JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int lower, int upper, int first,
-                 int last, double sigma_mm) {
+                 int last, double sigma_mm, double most_open) {
     // Behind the upper point, away from the lower one, as far as the surface goes on: eight points, or as many as it takes
     // that noise does not turn their direction.
     const int step = upper - lower;
@@ -155,7 +154,7 @@ JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int
     }
     // Half of the way to the lower side, which is farther than a pitch where a point is missing or stood in the step.
     end.open = end.pitch;
-    if (const double across = std::abs((x[upper] - x[lower]) * end.tx); across <= kMostOpen * end.pitch)
+    if (const double across = std::abs((x[upper] - x[lower]) * end.tx); across <= most_open * end.pitch)
         end.open = std::max(end.pitch, across);
     end.x += 0.5 * end.open * end.tx;
     end.z += 0.5 * end.open * end.tz;
@@ -163,13 +162,13 @@ JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int
 }
 
 bool gap_ends(const std::vector<double>& x, const std::vector<double>& z, int before, int first, int last,
-              double sigma_mm, std::vector<JumpEnd>& ends) {
+              double sigma_mm, double most_open, std::vector<JumpEnd>& ends) {
     constexpr double kLevel = 0.5;  // of its width that a gap's sides may differ in height
     const double dx = x[before + 1] - x[before], dz = z[before + 1] - z[before];
     if (!(std::abs(dz) < kLevel * std::abs(dx))) return false;
     for (const bool left : {true, false}) {
         const int end = left ? before : before + 1, other = left ? before + 1 : before;
-        JumpEnd rim = jump_end(x, z, other, end, first, last, sigma_mm);
+        JumpEnd rim = jump_end(x, z, other, end, first, last, sigma_mm, most_open);
         rim.height = std::hypot(dx, dz);
         rim.of_gap = true;
         if (rim.is_edge && rim.pitch > 0) ends.push_back(rim);

@@ -39,9 +39,9 @@ struct JumpEnd {
 };
 // The jump between neighbours `lower` and `upper` (indices, side by side); the surface's direction comes from
 // the points behind the upper one within the range [first, last], of noise sigma_mm: eight, or as many as it takes that
-// noise does not turn it.
+// noise does not turn it. Apart along it the two are by most_open pitches at most (ContourPitch::most_open()).
 JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int lower, int upper, int first,
-                 int last, double sigma_mm);
+                 int last, double sigma_mm, double most_open);
 
 // At the jump between neighbours `at` and `at` + 1.
 SheetOutline outline_at(const std::vector<double>& x, const std::vector<double>& z, int at, int first,
@@ -50,6 +50,6 @@ SheetOutline outline_at(const std::vector<double>& x, const std::vector<double>&
 // The two rims of a gap between neighbours `before` and `before` + 1, where their surfaces are about level; a rim that
 // bends out of sight is none. False where it is no such gap.
 bool gap_ends(const std::vector<double>& x, const std::vector<double>& z, int before, int first, int last,
-              double sigma_mm, std::vector<JumpEnd>& ends);
+              double sigma_mm, double most_open, std::vector<JumpEnd>& ends);
 
 }  // namespace seamwright

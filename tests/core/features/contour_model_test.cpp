@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "contours.h"
 #include "core/features/contour/reduce_contour.h"
@@ -116,6 +117,44 @@ TEST(ContourModel, NoiseEstimateAndFittedCurve) {
         }
         EXPECT_LT(std::sqrt(sum / double(model.edges().size())), 0.35 * sigma);
     }
+}
+
+// A step that a mean over neighbours has drawn out is a step again, in the middle of its ramp; a flank that is a little
+// longer than a mean makes of any step stays one.
+TEST(ContourModel, AStepDrawnOutByAMeanIsAStep) {
+    for (const int many : {3, 5, 7})
+        for (const double slope_deg : {0., 12.})
+            for (const bool flank : {false, true}) {
+                Random random(5);
+                std::normal_distribution<double> noise(0, 0.02);
+                constexpr double kPitch = 0.05, kStep = 1, kEdge_mm = 10.01;
+                const double wide = flank ? 4 * many * kPitch : 0;
+                std::vector<double> raw;
+                Profile p;
+                for (int i = 0; i < 600; ++i) {
+                    const double x = kPitch * i,
+                                 part = std::clamp((x - kEdge_mm) / std::max(wide, 1e-9), 0.0, 1.0);
+                    p.x_mm.push_back(x);
+                    raw.push_back(x * std::tan(rad_from_deg(slope_deg)) - part * kStep + noise(random));
+                }
+                for (int i = 0; i < 600; ++i) {
+                    const int from = std::max(i - many / 2, 0), to = std::min(i + many / 2, 599);
+                    p.z_mm.push_back(std::accumulate(&raw[from], &raw[to] + 1, 0.0) / (to - from + 1));
+                }
+                ContourModel model;
+                model.build(p);
+                EXPECT_NEAR(model.pitch().shared, many, 1) << many;
+                EXPECT_NEAR(model.sigma_mm(), 0.02 / std::sqrt(many), 0.004) << many << " " << slope_deg;
+                int walls = 0;
+                for (const auto& e : model.edges()) {
+                    walls += e.wall;
+                    if (!e.wall) continue;
+                    EXPECT_NEAR(e.cx + model.origin().x(), kEdge_mm, kPitch) << many << " " << slope_deg;
+                    EXPECT_NEAR(2 * std::abs(e.cx - model.x()[std::size_t(e.point)]), many * kPitch,
+                                1.01 * kPitch);
+                }
+                EXPECT_EQ(walls, flank ? 0 : 1) << many << " " << slope_deg;
+            }
 }
 
 }  // namespace

@@ -180,6 +180,29 @@ inline Profile seen(const std::vector<Sheet>& sheets, const SensorModel& s, Dice
     return p;
 }
 
+// The mean of so many neighbours, of those that returned: a sensor's own smoothing.
+inline void smooth(Profile& profile, int neighbours) {
+    const std::vector<double> z = profile.z_mm;
+    const int n = static_cast<int>(z.size()), half = neighbours / 2;
+    for (int i = 0; i < n; ++i) {
+        double sum = 0, many = 0;
+        for (int k = std::max(i - half, 0); k <= std::min(i + half, n - 1); ++k)
+            if (std::isfinite(z[std::size_t(k)])) sum += z[std::size_t(k)], ++many;
+        if (std::isfinite(z[std::size_t(i)])) profile.z_mm[std::size_t(i)] = sum / many;
+    }
+}
+
+// Noise that so many neighbours share, as a rough surface's speckle: nothing of the shape is smeared.
+inline void speckle(Profile& profile, double noise, int neighbours, Dice& dice) {
+    std::vector<double> white(profile.size() + std::size_t(neighbours));
+    for (double& v : white) v = dice.normal();
+    for (std::size_t i = 0; i < profile.size(); ++i) {
+        double sum = 0;
+        for (int k = 0; k < neighbours; ++k) sum += white[i + std::size_t(k)];
+        profile.z_mm[i] += noise * sum / std::sqrt(neighbours);
+    }
+}
+
 struct Scene {
     std::vector<Sheet> sheets;
     SensorModel sensor;

@@ -204,6 +204,51 @@ TEST(Joints, MatchedWhereDeterminedRefusedOtherwise) {
     }
 }
 
+// What neighbours share of their noise, by a sensor's own mean or by speckle, is no shape of the part and no more points; a
+// step that the mean has drawn out is no flank. Never at a wrong place for that, and as sure as it says.
+TEST(Joints, SharedNoiseIsNoShape) {
+    struct Like {
+        int smoothed, speckle;
+        double least_right;
+    };
+    for (const Like shared : {Like{3, 1, 0.9}, {5, 1, 0.8}, {1, 5, 0.75}}) {
+        std::printf("\nmean of %d, speckle of %d\n", shared.smoothed, shared.speckle);
+        MatchTally all, never;
+        for (const JointMaker make : kJoints) {
+            Dice dice(seed_of(103));
+            MatchTally known;
+            const char* name = "";
+            for (int i = 0; i < trials_of(50); ++i) {
+                const Joint joint = make(dice);
+                name = joint.name;
+                SensorModel sensor = SensorModel::any(dice);
+                sensor.quantum = std::min(sensor.quantum, sensor.noise);
+                if (shared.speckle > 1) sensor.grid = Grid::exact;
+                SensorModel drawn = sensor;
+                if (shared.speckle > 1) drawn.noise = 0.1 * sensor.noise;  // the rest is speckle
+                MatchScene t = match_scene(joint, drawn, 0, 0.98, dice);
+                t.sensor = sensor;
+                // As many points as one count as one.
+                t.best_sigma_mm *= shared.speckle > 1 ? 10 * std::sqrt(shared.speckle) : 1;
+                for (Profile* p : {&t.taught, &t.scene}) {
+                    if (shared.speckle > 1) speckle(*p, sensor.noise, shared.speckle, dice);
+                    smooth(*p, shared.smoothed);
+                }
+                const Registration r = matched(t);
+                (t.determined() ? known : never).add(t, r);
+                if (t.determined()) all.add(t, r);
+            }
+            known.print(name);
+        }
+        all.print("ALL determined");
+        never.print("ALL others");
+        EXPECT_GE(all.right, shared.least_right * all.trials);
+        EXPECT_GE(all.covered, 0.91 * all.right);
+        EXPECT_LE(all.wrong, 0.004 * all.trials);
+        EXPECT_LE(all.far + never.far, 0.002 * (all.trials + never.trials));
+    }
+}
+
 // A gap's slopes determine nothing, so that the census above has nothing to measure a place by: an answer that lies a
 // millimetre off is wrong nonetheless.
 TEST(Joints, AGapBeyondTheWindowIsNotFoundInIt) {

@@ -21,6 +21,7 @@ constexpr auto kWords = std::to_array<Word>({
     {"fit_length_mm", QT_TRANSLATE_NOOP("Words", "Fitted length")},
     {"field_x_min_mm", QT_TRANSLATE_NOOP("Words", "Sensor's field, x from")},
     {"field_x_max_mm", QT_TRANSLATE_NOOP("Words", "Sensor's field, x to")},
+    {"every_line", QT_TRANSLATE_NOOP("Words", "Every line is listed")},
     {"split", QT_TRANSLATE_NOOP("Words", "Split")},
     {"left_from_mm", QT_TRANSLATE_NOOP("Words", "Left line, x from")},
     {"left_to_mm", QT_TRANSLATE_NOOP("Words", "Left line, x to")},

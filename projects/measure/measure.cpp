@@ -1,6 +1,7 @@
 #include "projects/measure/measure.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/features/kinds/feature_registry.h"
@@ -193,6 +194,20 @@ struct SpotMeasurer::Impl {
     }
 };
 
+// The stripe in an image has a place for every line; a sensor that lists one line without return lists all of them.
+static bool lists_every_line(const Project& project, const Spot& spot) {
+    constexpr std::ptrdiff_t kFewest = 3;
+    const Calibration* calibration = calibration_of(project, spot);
+    if (calibration && calibration->method == "pixels")
+        return false;  // a look at images, nothing that is corrected by
+    if (calibration && calibration->model) return true;
+    return std::any_of(project.spots.begin(), project.spots.end(), [&](const Spot& other) {
+        const auto& z = other.reference_profile.z_mm;
+        return other.sensor_id == spot.sensor_id &&
+               std::count_if(z.begin(), z.end(), [](double v) { return !std::isfinite(v); }) >= kFewest;
+    });
+}
+
 SpotMeasurer::SpotMeasurer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 SpotMeasurer::SpotMeasurer(SpotMeasurer&&) noexcept = default;
 SpotMeasurer& SpotMeasurer::operator=(SpotMeasurer&&) noexcept = default;
@@ -206,7 +221,9 @@ Expected<SpotMeasurer> SpotMeasurer::make(const Project& project, const std::str
     if (!sensor)
         return input_error(Text("its sensor \"{}\" is not in the project", spot->sensor_id), where,
                            "choose one of the project's sensors");
-    auto finder = make_feature_finder(spot->feature);
+    FeatureRecipe recipe = spot->feature;
+    if (recipe.kind == "contour-end" && lists_every_line(project, *spot)) recipe.parameters["every_line"] = 1;
+    auto finder = make_feature_finder(recipe);
     if (!finder) {
         Error error = finder.error();
         error.within(where);

@@ -241,7 +241,7 @@ void ContourSheets::judge_ends(const Profile& profile, const SensorField& field)
         return !std::isfinite(profile.x_mm[std::size_t(k)]) || !std::isfinite(profile.z_mm[std::size_t(k)]);
     };
     for (int k = 0; k < lines; ++k) empty += is_empty(k);
-    bool told = empty >= kFewestEmpty || is_empty(0) || is_empty(lines - 1);
+    bool told = field.every_line || empty >= kFewestEmpty || is_empty(0) || is_empty(lines - 1);
     if (!told) {
         const double a = profile.x_mm.front(), b = profile.x_mm.back();
         told = std::abs(a + b) <= kEvenPitches * pitch_.along_x + 3 * noise_ && lines >= kFewestLines;

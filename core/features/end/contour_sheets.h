@@ -22,8 +22,8 @@
 #include <array>
 #include <vector>
 
-#include "core/features/contour/contour_model.h"
 #include "core/features/contour/contour_noise.h"
+#include "core/features/contour/contour_pitch.h"
 #include "core/features/feature_points.h"
 
 namespace seamwright {
@@ -45,9 +45,10 @@ struct Sheet {
 
 // The sensor's field along x, where it is known beside what the profile tells. A profile that lists lines
 // without return (at its rim, or some at least) tells it by its first and last line; one without any only when it lies evenly about x = 0,
-// as a full field does.
+// as a full field does, or where it is known that its sensor lists every line.
 struct SensorField {
     double x_min, x_max;
+    bool every_line = false;
 };
 
 class ContourSheets {

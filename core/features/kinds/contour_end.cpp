@@ -94,6 +94,16 @@ std::vector<ParameterInfo> contour_end_parameters() {
          "Left rim of the sensor's field, where profiles come without their empty lines."},
         {"field_x_max_mm", "mm", -1e5, 1e5, 1e5, 3,
          "Right rim of the sensor's field, where profiles come without their empty lines."},
+        {"every_line",
+         "",
+         0,
+         1,
+         0,
+         0,
+         "Whether profiles list every line of the field, also those without a return: then the first and the "
+         "last line are its "
+         "rims, where nothing ends.",
+         {"unknown", "yes"}},
     });
 }
 
@@ -323,7 +333,7 @@ Expected<std::unique_ptr<FeatureFinder>> make_contour_end(const FeatureRecipe& r
     const auto infos = contour_end_parameters();
     SEAM_TRY(const auto window, FeatureWindow::from(recipe.parameters, infos));
     auto value = [&](const char* name) { return parameter(recipe.parameters, infos, name); };
-    const SensorField field{value("field_x_min_mm"), value("field_x_max_mm")};
+    const SensorField field{value("field_x_min_mm"), value("field_x_max_mm"), value("every_line") > 0.5};
     if (!(field.x_min < field.x_max))
         return input_error(Text("a field from x = {} to {} mm is empty", field.x_min, field.x_max),
                            "field_x_min_mm", "give a minimum below the maximum");

@@ -1,7 +1,10 @@
 #include "projects/reuse/exchange.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <random>
 
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
@@ -157,6 +160,52 @@ TEST_F(Recorded, FolderOfProfilesGivesARunAndACorrection) {
     const Pose& d = run->regions[0].correction->displacement.workobject_from_movedworkobject;
     EXPECT_LT(distance_mm(d, truth), 1e-6);
     EXPECT_LT(angle_rad(d, truth), 1e-9);
+}
+
+// The field of the sensor that recorded them lies beside x = 0. What it lists of the taught part tells that its last line is its
+// rim: a part whose edges lie beyond is not measured there.
+TEST(FolderOfProfiles, AnEdgeBeyondTheFieldIsNotAtItsRim) {
+    const TemporaryFolder folder;
+    const auto record = [&](const std::string& name, double edge_mm) {
+        std::mt19937_64 random(7);
+        std::normal_distribution<double> noise(0, 0.01);
+        for (int spot = 0; spot < 4; ++spot) {
+            std::string csv = "x_mm,z_mm\n";
+            for (int i = 0; i <= 1200; ++i) {
+                const double x = 0.05 * i;
+                csv += fmt::format("{},{}\n", x,
+                                   x < edge_mm ? fmt::format("{:.4f}", noise(random)) : std::string());
+            }
+            const std::string stem = fmt::format("S{}", spot + 1);
+            std::filesystem::create_directories(folder / name);
+            ASSERT_TRUE(write_text_file(folder / name / (stem + ".csv"), csv));
+            ASSERT_TRUE(write_text_file(folder / name / (stem + ".json"),
+                                        fmt::format("{{\"xyz\":[{},{},500],\"abc\":[{},0,180]}}",
+                                                    300 * (spot % 2), 300 * (spot / 2), 40 * spot)));
+        }
+    };
+    record("taught", 45);
+    record("near", 52);
+    record("beyond", 63);
+    for (const auto& [name, measured] : {std::pair{"near", true}, {"beyond", false}}) {
+        FolderImport o;
+        o.folder = folder / name;
+        o.reference_folder = folder / "taught";
+        o.feature.kind = "contour-end";
+        o.feature.parameters = {{"side", 1}};
+        o.calibration_verdict = Verdict::good;
+        const auto imported = import_folder(o);
+        ASSERT_TRUE(imported) << imported.error().sentence();
+        const fs::path path = folder / (std::string(name) + ".seam");
+        ASSERT_TRUE(ProjectFile::create(path, imported->project));
+        auto station = Station::open(path);
+        ASSERT_TRUE(station->connect());
+        const auto run = station->run({});
+        ASSERT_TRUE(run) << run.error().sentence();
+        for (const SpotMeasurement& m : run->spots)
+            EXPECT_EQ(m.status, measured ? SpotStatus::measured : SpotStatus::no_feature)
+                << name << ": " << m.message;
+    }
 }
 
 TEST_F(Recorded, WithoutReferenceFolderTheFolderIsTheTaughtState) {

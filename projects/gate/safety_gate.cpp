@@ -62,6 +62,22 @@ Pose displacement_to(const GateRequest& request, const Region& region, const Pos
            request.base_from_workobject;
 }
 
+// How far the spots move by a displacement, and how far the limits let them: as a shift and a turn about some point of the part.
+// The work object's origin may lie metres away, where a turn that throws the part aside shifts nothing.
+double spots_move_mm(const GateRequest& request, const Pose& d) {
+    double most = 0;
+    for (const GateSpot& spot : request.spots)
+        most = std::max(most, (d * spot.point_workobject_mm - spot.point_workobject_mm).norm());
+    return most;
+}
+double spots_may_move_mm(const GateRequest& request, const Region& region) {
+    double spread = 0;
+    for (const GateSpot& a : request.spots)
+        for (const GateSpot& b : request.spots)
+            spread = std::max(spread, (a.point_workobject_mm - b.point_workobject_mm).norm());
+    return region.limits.translation_mm + rad_from_deg(region.limits.rotation_deg) * spread;
+}
+
 void judge_age(const GateRequest& request, const GateSpot& spot, Reasons& reasons) {
     constexpr double kClocksDifferDays = 1.0 / 24;  // of two computers
     const auto made = utc_seconds(spot.calibrated_utc), now = utc_seconds(request.now_utc);
@@ -218,7 +234,8 @@ void judge_jump(const GateRequest& request, Reasons& reasons) {
         if (!limits_that_are_none(other).empty() || !rigid(other.base_from_frame)) continue;
         const Pose theirs = displacement_to(request, other, now);
         if (theirs.translation().norm() <= other.limits.translation_mm &&
-            deg_from_rad(angle_rad(theirs, Pose::Identity())) <= other.limits.rotation_deg)
+            deg_from_rad(angle_rad(theirs, Pose::Identity())) <= other.limits.rotation_deg &&
+            spots_move_mm(request, theirs) <= spots_may_move_mm(request, other))
             return;  // as their last part left it
     }
     const Pose d = displacement_to(request, region, now);
@@ -237,6 +254,12 @@ void judge_jump(const GateRequest& request, Reasons& reasons) {
         "limits of {:.3f} mm and {:.3f} degrees: the path would jump by {:.1f} mm (compare units, robot and "
         "the taught frame)",
         region.frame_name, length, turn, region.limits.translation_mm, region.limits.rotation_deg, jump);
+    const double moved = spots_move_mm(request, d), may = spots_may_move_mm(request, region);
+    reasons.refuse_unless(
+        length > region.limits.translation_mm || moved <= may,
+        "frame {} on the controller holds the spots {:.1f} mm off the taught ones, the region's limits "
+        "allow {:.1f} mm (compare units, robot and the taught frame)",
+        region.frame_name, moved, may);
 }
 
 void judge_correction(const GateRequest& request, Reasons& reasons) {
@@ -264,6 +287,13 @@ void judge_correction(const GateRequest& request, Reasons& reasons) {
     reasons.refuse_unless(turn <= region.limits.rotation_deg,
                           "the rotation of {:.3f} degrees is beyond the limit of {:.3f} degrees", turn,
                           region.limits.rotation_deg);
+
+    const double moved = spots_move_mm(request, d), may = spots_may_move_mm(request, region);
+    reasons.refuse_unless(
+        length > region.limits.translation_mm || moved <= may,
+        "the spots move by {:.1f} mm, the region's limits allow {:.1f} mm there (the work object's "
+        "origin lies far from the part: a turn about it moves the part)",
+        moved, may);
 
     // Where the path runs, not at the work object's origin, which may lie metres away and says nothing about
     // the bead.

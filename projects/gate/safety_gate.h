@@ -10,7 +10,9 @@
 // what they were made with (spots, part, times, calibrations with their age, identities), the robot's mode,
 // and the jump: the frame that the controller holds now must be within the region's limits of the taught one,
 // by the measure of the displacement itself, D_now = workobject_from_base now taught^-1 base_from_workobject.
-// So must the frame to write; a taught frame in another unit or of another robot ends here.
+// So must the frame to write; a taught frame in another unit or of another robot ends here. The limits bind what moves: no
+// spot moves farther than a shift and a turn within them move it about a point of the part (the limit in mm, and that in
+// degrees over the largest distance of two spots), wherever the work object's origin lies.
 
 #include <functional>
 #include <optional>

@@ -158,6 +158,22 @@ std::vector<Refusal> refusals() {
              r.base_from_frame_now->linear() *= rotation_exp({0, 0, rad_from_deg(3.1)});
          },
          "would jump"},
+        {"TurnAboutAFarOrigin",
+         [](R r) {
+             for (auto& spot : r.spots) spot.point_workobject_mm.x() += 6000;
+             r.correction.displacement.workobject_from_movedworkobject =
+                 make_pose(rotation_exp({0, 0, rad_from_deg(2)}), Eigen::Vector3d::Zero());
+         },
+         "the spots move by 2"},
+        {"TurnAboutAFarOriginOnTheController",
+         [](R r) {
+             for (auto& spot : r.spots) spot.point_workobject_mm.x() += 6000;
+             *r.base_from_frame_now =
+                 r.base_from_workobject *
+                 make_pose(rotation_exp({0, 0, rad_from_deg(2)}), Eigen::Vector3d::Zero()) *
+                 r.base_from_workobject.inverse() * r.region.base_from_frame;
+         },
+         "on the controller holds the spots 2"},
         {"NoFrameOnTheController", [](R r) { (*r.base_from_frame_now)(0, 0) = kNan; }, "no rigid pose"},
         {"FrameNotRead",
          [](R r) {

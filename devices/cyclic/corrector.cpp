@@ -11,10 +11,11 @@ namespace {
 constexpr std::uint64_t kFarBack = 1000;  // cycles: older than that is no late packet
 constexpr int kSuspicion = 5;
 constexpr int kOpen = 10;                 // packets without an answer after which the numbers decide
-constexpr int kFound = 3;                 // packets that tell a path's motion
+constexpr int kFound = 3;                 // packets of a robot that stands, by what it shows
 constexpr std::uint64_t kForgiven = 250;  // good cycles per late one
 constexpr double kClearer = 0.5;          // one explanation against the other
 constexpr double kStandsMm = 0.5e-3;      // per cycle: no path is so slow
+constexpr double kShownStandsMm = 0.01, kShownStandsRad = 1e-4;  // the same of what a servo still makes good
 constexpr double kPathBegunMm = 0.5;
 constexpr int kStood = 3;  // cycles at its end before a session ends regularly
 constexpr double kRounding = 1e-12;
@@ -237,13 +238,19 @@ void CyclicCorrector::drop(const char* reason, bool new_session) {
 }
 
 // A robot that is met for the first time may hold what an earlier program has told it. True: it is not
-// answered yet, the path's motion must be known first.
-bool CyclicCorrector::adopt(const CyclicPacket& packet, const std::optional<CyclicTold>& shown) {
+// answered yet. A moving one, or one that has just come to a stand, shows its servo's lag as well: the motion of as long as any
+// lag must be known first.
+bool CyclicCorrector::adopt(const CyclicPacket& packet, const std::optional<CyclicTold>& shown,
+                            double moved_mm) {
     const auto nothing = [&](const CyclicTold& t) {
         return t.mm.norm() <= settings_.follow_tolerance_mm && t.turn_rad.norm() <= tolerance_rad_;
     };
     if (!shown || nothing(*shown)) return false;
-    if (++found_ < kFound) return true;
+    const bool stands = moved_mm <= kStandsMm && (shown->mm - found_shown_.mm).norm() <= kShownStandsMm &&
+                        (shown->turn_rad - found_shown_.turn_rad).norm() <= kShownStandsRad;
+    found_shown_ = *shown;
+    found_ = stands ? found_ + 1 : 1;
+    if (found_ < kFound && !history_.full()) return true;
     const CyclicTold found = history_.without_lag(*shown, packet, *protocol_);
     if (nothing(found) || found.mm.norm() > settings_.max_translation_mm * 1.01 ||
         found.turn_rad.norm() > rad_from_deg(settings_.max_rotation_deg) * 1.01)
@@ -422,10 +429,9 @@ bool CyclicCorrector::handle(std::span<const std::byte> datagram, const CyclicAr
     if (!packet.programmed) packet.programmed = last_.programmed;
     last_ = packet;
     watch_follow(shown);
-    if (found_ < kFound) {
-        const bool wait = adopt(packet, shown);
-        if (!wait) found_ = kFound;
-        owed_ = owed_ && !wait;
+    if (!looked_) {
+        looked_ = !adopt(packet, shown, moved_mm);
+        owed_ = owed_ && looked_;
     }
     if (!packet.problem) watch_path(packet, moved_mm);
     if (steering_ && !packet.problem) steering_->see(last_, phase_, arrival.heard_ns);

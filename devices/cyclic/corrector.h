@@ -21,7 +21,8 @@
 //   - A robot that shows zero within an unbroken session is not answered for kSuspicion packets, which leaves
 //     it what it has, until it is certain.
 //   - A robot that is found with a correction that nobody here has told (this program was ended in the
-//     middle) is led back from there.
+//     middle) is led back from there. One that shows its servo's lag too, as it moves, is not answered until the lag is
+//     known (kLargestLag_s).
 //
 // An alarm ramps back to zero while the answers go on. The correction is held nowhere: holding it while the
 // path runs on is no smaller a deviation, and only looks like calm. Alarms: `max_late` late or missed cycles
@@ -100,7 +101,7 @@ class CyclicCorrector {
     Relation relate(const CyclicPacket& packet, const CyclicArrival& arrival);
     enum class Holds { on, zero, unknown };
     Holds judge(const CyclicPacket& packet, const std::optional<CyclicTold>& shown, Relation relation);
-    bool adopt(const CyclicPacket& packet, const std::optional<CyclicTold>& shown);
+    bool adopt(const CyclicPacket& packet, const std::optional<CyclicTold>& shown, double moved_mm);
     void commit(bool taken);
     void drop(const char* reason, bool new_session);
     void watch_late(const CyclicPacket& packet, std::uint64_t missed);
@@ -130,7 +131,9 @@ class CyclicCorrector {
     bool showed_zero_ = false;  // it has shown in this session that it holds nothing
     bool follows_ = false, settled_ = true;
     Misfit misfit_;
-    int found_ = 0;      // first packets that show a correction
+    bool looked_ = false;  // whether the robot holds what nobody here has told
+    int found_ = 0;        // packets in a row that show the same, standing
+    CyclicTold found_shown_;
     int suspicion_ = 0;  // packets in a row that show zero instead of what was taken
     int open_ = 0;       // packets since numbers that jumped, of which it is not known what the robot holds
     int deviating_ = 0;  // packets in a row

@@ -28,6 +28,7 @@ class HeldHistory {
   public:
     explicit HeldHistory(double cycle_s);
     void clear() { count_ = 0; }
+    bool full() const { return count_ == capacity_; }  // as long as any lag
     void add(const CyclicTold& held, const Pose& programmed);
     // The newest one again away.
     void take_back() {

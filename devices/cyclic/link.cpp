@@ -269,6 +269,8 @@ Expected<void> CyclicLink::write_frame(const std::string& name, const Pose& base
                                  turn, s.max_rotation_deg),
                             name);
     written_[name] = base_from_frame;
+    if (std::exchange(decided_, false)) of_part_.clear();
+    of_part_.insert(name);
     return {};
 }
 
@@ -287,7 +289,8 @@ Expected<CyclicServer::State> CyclicLink::on_path(Clock::time_point until) {
 Expected<void> CyclicLink::apply() {
     std::optional<Pose> b;
     std::string first;
-    for (const auto& [name, frame] : written_) {
+    for (const std::string& name : of_part_) {
+        const Pose frame = written_.at(name);
         const Pose taught = settings_.taught.at(name);
         const Pose of_this = frame * taught.inverse();
         // Compared at the frame, where it matters; far from it a rounded rotation has a long lever.
@@ -351,6 +354,7 @@ Expected<void> CyclicLink::confirm(PartVerdict verdict, const std::string& text)
         server_->withdraw();
         return ok;
     }
+    decided_ = true;
     if (verdict == PartVerdict::corrected) server_->forget_path();
     auto done = verdict == PartVerdict::corrected ? apply() : back_to_zero();
     if (!done) {

@@ -27,6 +27,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -103,6 +104,9 @@ class CyclicLink : public RobotLink, public SteeredLink {
     std::unique_ptr<CyclicServer> server_;
     std::unique_ptr<RobotLink> measuring_;  // may be null
     std::map<std::string, Pose> written_;
+    std::set<std::string>
+        of_part_;  // written since a part was last decided on: another type's frames say nothing of this one
+    bool decided_ = false;
     struct Identified {
         RobotIdentity identity;
         std::string address;

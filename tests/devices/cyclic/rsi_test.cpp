@@ -106,6 +106,26 @@ TEST(Rsi, RelativeIncrementsAddUpToTheCorrection) {
     expect_on_displaced_path(pair.robot().newest(), written() * kTaught.inverse(), 1e-6);
 }
 
+// Each part type may have a frame of its own: the controller holds the correction of those that were written for this part.
+TEST(Rsi, FramesOfAnotherTypeSayNothing) {
+    Pair pair = open_pair({{"frames",
+                            {{"L", {{"base_from_frame", pose_json(kTaught)}}},
+                             {"R", {{"base_from_frame", pose_json(kTaught)}}}}}});
+    Pose back = written();
+    back.translation() = 2 * kTaught.translation() - back.translation();
+    for (const auto& [name, frame] : {std::pair{"L", written()}, {"R", back}, {"L", written()}}) {
+        ASSERT_TRUE(pair.link->write_frame(name, frame));
+        const auto confirmed = pair.link->confirm(PartVerdict::corrected, "");
+        ASSERT_TRUE(confirmed) << name << ": " << confirmed.error().sentence();
+        EXPECT_TRUE(pair.robot().released());
+    }
+    ASSERT_TRUE(pair.link->write_frame("L", written()));
+    ASSERT_TRUE(pair.link->write_frame("R", back));
+    const auto refused = pair.link->confirm(PartVerdict::corrected, "");
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().sentence(), HasSubstr("frames L and R want different corrections"));
+}
+
 TEST(Rsi, RefusesBeyondTheLimitsInWords) {
     Pair pair = open_pair({{"max_translation_mm", 2}, {"max_rotation_deg", 0.5}});
     Pose far = kTaught, turned = kTaught;

@@ -361,6 +361,41 @@ TEST(RobotFoundCorrected, IsLedBackFromThere) {
     }
 }
 
+// A robot that is met on its way shows its servo's lag beside what it holds: what lag explains is no correction, and nothing is
+// told before that is known.
+TEST(RobotFoundMoving, ItsLagIsNoCorrection) {
+    for (const bool relative : {false, true})
+        for (const std::size_t lag : {0U, 3U, 6U, 15U})
+            for (const double speed_mm_s : {15., 100., 300.})
+                for (const double held_mm : {0., 3.})
+                    for (const int moves_for : {1, 12, 1000}) {  // cycles; then it stands
+                        const std::string where =
+                            fmt::format("relative {}, lag {}, {} mm/s, held {}, {} cycles", relative, lag,
+                                        speed_mm_s, held_mm, moves_for);
+                        Direct first(relative);
+                        first.robot.lag_cycles = lag;
+                        first.cycles(40);
+                        first.move_to(held_mm);
+                        first.cycles(400);
+                        ASSERT_NEAR(first.robot.in_force()[2], held_mm, 1e-6) << where;
+                        const auto along = [&](Direct& d, int cycles, int moving) {
+                            for (int i = 0; i < cycles; ++i) {
+                                if (i < moving) d.robot.programmed.translation().x() += 0.004 * speed_mm_s;
+                                d.cycle();
+                            }
+                        };
+                        along(first, 60, 60);
+                        ASSERT_FALSE(first.corrector.alarm()) << where;
+                        Direct second(relative);
+                        second.robot = first.robot;
+                        along(second, 700, moves_for);
+                        EXPECT_LE(second.steps.mm, kStepMm) << where;
+                        EXPECT_EQ(second.corrector.alarm().has_value(), held_mm > 0) << where;
+                        EXPECT_NEAR(second.robot.in_force()[0], 0, 1e-9) << where;
+                        EXPECT_NEAR(second.robot.in_force()[2], 0, 1e-3) << where;
+                    }
+}
+
 // The release falls in the same cycle in which the permission goes, whatever takes it, and what becomes of
 // <Path> afterwards is not told as the end of a path, neither of this permission nor of the next.
 TEST(PathPermission, GoesAtOnceAndAStoppedPathIsNoPathThatIsOver) {

@@ -64,7 +64,7 @@ class Apt final : public Machine {
         end.tokens = {{Token::Kind::end, "", 0, line}};
         all.body.push_back(std::move(end));
         routine_order_.push_back(all.name);
-        routines_[all.name] = std::move(all);
+        add_routine(std::move(all));
     }
 
   protected:
@@ -146,8 +146,9 @@ class Apt final : public Machine {
                  cycle_ ? Text("a cycle moves about its points by itself") : Text());
         } else if (word == "CUTCOM" && !is("OFF")) {
             note(LineKind::not_understood, "the controller shifts the path by its tool's radius");
-        } else if (word == "LOADTL" || word == "TOOLNO") {
-            tool_ = fmt::format("{}/{}", word, f.empty() ? "" : f.front().text);
+        } else if (word == "LOADTL" || word == "TOOLNO" || (word == "LOAD" && is("TOOL"))) {
+            const std::size_t number = word == "LOAD" ? 1 : 0;
+            loaded_ = fmt::format("{}/{}", word, f.size() <= number ? "" : f[number].text);
             note(LineKind::understood);
         } else if (word == "GOHOME") {
             note(LineKind::left_out, "joint values: the way to the path or from it");
@@ -178,6 +179,7 @@ class Apt final : public Machine {
         int line;
         Eigen::Vector3d position, axis;
         ProgramMotion motion;
+        std::string tool;
     };
 
     static std::vector<Token> fields_of(std::string_view record, int line) {
@@ -231,7 +233,7 @@ class Apt final : public Machine {
         if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 1e5) return gap("the point lies beyond 100 m");
         if (stops_.size() >= kPathPointLimit) return gap("there are too many points");
         note(LineKind::understood);
-        stops_.push_back({now_line_, p, axis_, motion});
+        stops_.push_back({now_line_, p, axis_, motion, loaded_});
         last_ = p;
     }
 
@@ -304,6 +306,7 @@ class Apt final : public Machine {
             r.col(1) = z.cross(x);
             r.col(2) = z;
             now_line_ = s.line;
+            tool_ = s.tool;
             move(make_pose(r, s.position), s.motion, "");
         }
         if (!stops_.empty())
@@ -319,6 +322,7 @@ class Apt final : public Machine {
     std::optional<Eigen::Vector3d> last_, heading_;
     std::optional<Circle> circle_;
     bool cycle_ = false;
+    std::string loaded_;
     std::vector<Stop> stops_;
 };
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 namespace seamwright::program_path {
 
@@ -54,15 +55,18 @@ Machine::Flow Fanuc::execute(const Statement& s) {
         c.take(), c.take();
         (word == "offset" ? offset_ : tool_offset_) = c.peek().text;
         note(LineKind::understood);
-    } else if (c.is("=", 1) && (word.starts_with("r[") || word.starts_with("pr[") ||
-                                word.starts_with("uframe[") || word.starts_with("p["))) {
+    } else if (c.is("=", 1) &&
+               (word.starts_with("r[") || word.starts_with("pr[") || word.starts_with("uframe[") ||
+                word.starts_with("utool[") || word.starts_with("p["))) {
         c.take(), c.take();
         give(word, c);
     } else if (word == "lbl" || word.starts_with("lbl[")) {
         note(LineKind::understood);
-    } else if (word == "end" || word == "abort") {
+    } else if (word == "end") {
+        return give_back({});
+    } else if (word == "abort") {  // PAUSE goes on at the start key
         note(LineKind::understood);
-        return Flow::back;
+        return Flow::halt;
     } else if (word == "jmp") {
         note(LineKind::understood);
         remark("a loop made by a jump back is read once");
@@ -76,10 +80,17 @@ Machine::Flow Fanuc::execute(const Statement& s) {
         std::string name = c.peek().text;
         std::transform(name.begin(), name.end(), name.begin(),
                        [](unsigned char x) { return std::toupper(x); });
-        if (word == "call" && enter(name, {}, flow))
+        if (word == "call" && routine(name, now_file_)) {
+            const auto conditions = std::pair(std::exchange(offset_, {}), std::exchange(tool_offset_, {}));
+            enter(name, {}, flow);
+            // Whether those of the called program live on is not in the manual.
+            offset_ = offset_.empty() ? conditions.first : std::string();
+            tool_offset_ = tool_offset_.empty() ? conditions.second : std::string();
             note(LineKind::understood);
-        else
+        } else {
             note(LineKind::passed_over, Text("{} is not in the files that were read", name));
+        }
+        return flow;
     } else {
         note(LineKind::passed_over);
     }
@@ -92,8 +103,9 @@ void Fanuc::give(const std::string& word, Cursor& c) {
     if (word.starts_with("p[")) {
         int n = 0;
         std::from_chars(word.data() + 2, word.data() + word.size(), n);
-        positions_[n].pose.reset();  // from here on it is what the program computes
-        positions_[n].joints = false;
+        Position& p = positions_[{now_file_, n}];
+        p.pose.reset();  // from here on it is what the program computes
+        p.joints = false;
         return;
     }
     if (word.starts_with("r[")) return put(value_of(*read_expression(c, Dialect::rapid)));
@@ -129,7 +141,7 @@ void Fanuc::give(const std::string& word, Cursor& c) {
         if (t.text.starts_with("p[")) {
             int n = 0;
             std::from_chars(t.text.data() + 2, t.text.data() + t.text.size(), n);
-            const auto at = positions_.find(n);
+            const auto at = positions_.find({now_file_, n});
             if (at != positions_.end() && at->second.pose) term = fanuc_pose_value(*at->second.pose);
         } else if (t.text == "lpos" && here()) {
             term = fanuc_pose_value(*here());
@@ -158,7 +170,8 @@ NamedPose Fanuc::user_frame(const std::string& number) const {
     if (number == "0") return {"", Pose::Identity()};
     const std::string name = "UF " + number;
     const auto at = frames_.find(name);
-    return {name, at == frames_.end() ? std::nullopt : at->second};
+    if (at == frames_.end()) return {name, std::nullopt};
+    return {name, at->second, !at->second};
 }
 
 std::optional<Fanuc::Position> Fanuc::position(const std::string& word) {
@@ -166,7 +179,7 @@ std::optional<Fanuc::Position> Fanuc::position(const std::string& word) {
     if (stored) {
         int n = 0;
         std::from_chars(word.data() + 2, word.data() + word.size(), n);
-        const auto at = positions_.find(n);
+        const auto at = positions_.find({now_file_, n});
         if (at == positions_.end()) return {};
         return at->second;
     }
@@ -214,7 +227,9 @@ void Fanuc::motion(const std::string& word, Cursor& c) {
         if (p && p->joints) return joint_values();
         if (!p || !p->pose) return gap(Text("{} is not known from the program", capitals(name)));
         set_frame(user_frame(p->frame == "F" ? frame_number_ : p->frame));
-        tool_ = "UT " + (p->tool == "F" ? tool_number_ : p->tool);
+        const std::string tool = p->tool == "F" ? tool_number_ : p->tool;
+        const Value* data = variable("utool[" + tool + "]");
+        set_tool("UT " + tool, data ? *data : Value{});
         Pose pose = *p->pose;
         if (incremental) {
             if (!here()) return gap("where this relative motion begins is not known");

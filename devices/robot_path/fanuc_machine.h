@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/notation.h"
@@ -47,12 +48,13 @@ class Fanuc final : public Machine {
 
     ExprPtr condition(const std::vector<Token>& tokens, std::size_t from, std::size_t to);
     static std::size_t index_of(const std::vector<Token>& tokens, std::string_view word);
+    static std::size_t comma_of(const std::vector<Token>& tokens);
     static std::string label_of(const std::vector<Token>& tokens, std::size_t from);
     static bool closes(const Statement& s);
     // Up to a closing word. A jump forward over statements of the same block leaves them out, or, with a condition, makes
     // them hang on it.
     Block block(const std::vector<Statement>& flat, std::size_t& at, int depth);
-    void read_position(int file, int line, std::string_view text, bool mine);
+    void read_position(int file, int line, std::string_view text);
 
     void give(const std::string& word, Cursor& c);
     NamedPose user_frame(const std::string& number) const;
@@ -60,7 +62,7 @@ class Fanuc final : public Machine {
     void motion(const std::string& word, Cursor& c);
     static std::string capitals(std::string name);
 
-    std::map<int, Position> positions_;
+    std::map<std::pair<int, int>, Position> positions_;  // by file and number: each program has its own
     std::map<std::string, std::optional<Pose>> frames_;
     std::string frame_number_ = "?", tool_number_ = "?", offset_, tool_offset_;
 };

@@ -82,7 +82,7 @@ void Fanuc::load(int file, std::string_view text) {
             if (position.empty()) position_line = line;
             position += std::string(now) + "\n";
             if (position.find('}') == std::string::npos && position.size() < 10000) continue;
-            read_position(file, position_line, position, file == 0);
+            read_position(file, position_line, position);
             position.clear();
         }
     }
@@ -94,9 +94,8 @@ void Fanuc::load(int file, std::string_view text) {
         for (Statement& s : block(flat, at, 0)) routine.body.push_back(std::move(s));
         if (at < flat.size()) routine.body.push_back(flat[at++]);  // a closing word of nothing
     }
-    if (routines_.count(name) > 0) return;
     routine_order_.push_back(name);
-    routines_[name] = std::move(routine);
+    add_routine(std::move(routine));
 }
 
 std::vector<Token> Fanuc::collapsed(const std::vector<Token>& tokens, bool with_registers) {
@@ -158,6 +157,17 @@ std::size_t Fanuc::index_of(const std::vector<Token>& tokens, std::string_view w
     const auto at =
         std::find_if(tokens.begin(), tokens.end(), [&](const Token& t) { return t.text == word; });
     return static_cast<std::size_t>(at - tokens.begin());
+}
+
+// Behind a condition, not between the numbers of PR[1,2].
+std::size_t Fanuc::comma_of(const std::vector<Token>& tokens) {
+    int open = 0;
+    for (std::size_t i = 0; i < tokens.size(); ++i) {
+        if (tokens[i].text == "[") ++open;
+        if (tokens[i].text == "]") --open;
+        if (open == 0 && tokens[i].text == ",") return i;
+    }
+    return tokens.size();
 }
 
 std::string Fanuc::label_of(const std::vector<Token>& tokens, std::size_t from) {
@@ -252,6 +262,14 @@ Block Fanuc::block(const std::vector<Statement>& flat, std::size_t& at, int dept
                 }
                 s.branches.emplace_back(staying, std::move(body));
             }
+        } else if (const std::size_t comma = comma_of(now.tokens);
+                   word == "if" && comma < now.tokens.size()) {  // IF R[1]=1,CALL SUB
+            s.kind = Statement::Kind::branch;
+            Statement deed = s;
+            deed.kind = Statement::Kind::simple;
+            deed.tokens.assign(now.tokens.begin() + static_cast<std::ptrdiff_t>(comma) + 1, now.tokens.end());
+            s.branches.emplace_back(condition(now.tokens, 1, comma), Block{std::move(deed)});
+            ++at;
         } else {
             s.tokens = now.tokens;
             ++at;
@@ -261,7 +279,7 @@ Block Fanuc::block(const std::vector<Statement>& flat, std::size_t& at, int dept
     return all;
 }
 
-void Fanuc::read_position(int file, int line, std::string_view text, bool mine) {
+void Fanuc::read_position(int file, int line, std::string_view text) {
     const std::size_t open = text.find('['), close = text.find(']'), brace = text.find('{');
     note(file, line, LineKind::understood);
     if (open == text.npos || close == text.npos || brace == text.npos || close < open || close > brace) {
@@ -289,7 +307,7 @@ void Fanuc::read_position(int file, int line, std::string_view text, bool mine) 
         n[i] = value.value_or(0);
     }
     if (whole) p.pose = pose_from(n);
-    if (mine) positions_[number] = std::move(p);
+    positions_[{file, number}] = std::move(p);
 }
 
 }  // namespace seamwright::program_path

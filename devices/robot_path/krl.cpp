@@ -7,38 +7,11 @@
 
 #include "core/geometry/notation.h"
 #include "devices/robot_path/krl_blocks.h"
+#include "devices/robot_path/krl_values.h"
 #include "devices/robot_path/machine.h"
 
 namespace seamwright::program_path {
 namespace {
-
-Value frame_value(const Pose& pose) {
-    const KukaAbc abc = kuka_from_rotation(pose.linear());
-    Value v = Value::numbers({pose.translation().x(), pose.translation().y(), pose.translation().z(),
-                              abc.a_deg, abc.b_deg, abc.c_deg});
-    v.names = {"X", "Y", "Z", "A", "B", "C"};
-    return v;
-}
-
-// What is missing is taken from `otherwise`. nullopt: a number is not known, or missing with nothing to take.
-std::optional<Pose> pose_of(const Value& v, const std::optional<Pose>& otherwise) {
-    if (v.kind != Value::Kind::list || v.names.empty()) return {};
-    static constexpr std::array<std::string_view, 6> names = {"X", "Y", "Z", "A", "B", "C"};
-    std::array<double, 6> n{};
-    std::optional<Value> rest;
-    for (std::size_t i = 0; i < 6; ++i) {
-        const Value* part = v.part(names[i]);
-        if (!part) {
-            if (!otherwise) return {};
-            if (!rest) rest = frame_value(*otherwise);
-            part = &rest->parts[i];
-        }
-        const auto number = part->as_number();
-        if (!number || std::abs(*number) > 1e9) return {};
-        n[i] = *number;
-    }
-    return make_pose(rotation_from_kuka({n[3], n[4], n[5]}), {n[0], n[1], n[2]});
-}
 
 class Krl final : public Machine {
   public:
@@ -57,6 +30,7 @@ class Krl final : public Machine {
         }
         if (!lines.empty() && lines.front().front().text == "DEFDAT") return data_list(file, lines);
         KrlBlocks blocks(std::move(lines), file);
+        bool first = true;  // the routine of the file's name is everybody's
         while (!blocks.done()) {
             if (!blocks.begins_routine()) {
                 blocks.next();
@@ -66,14 +40,20 @@ class Krl final : public Machine {
             routine.file = file;
             Cursor head(blocks.line());
             try {
-                head.accept("GLOBAL");
-                if (head.take().text == "DEFFCT") head.name();
+                routine.own = !head.accept("GLOBAL") && !std::exchange(first, false);
+                if (head.take().text == "DEFFCT") routine.returns = number_type(head.name());
+                while (head.accept("[") || head.accept(",") || head.accept("]")) {
+                }
                 routine.name = head.name();
                 head.accept("(");
                 while (!head.done() && !head.accept(")")) {
                     const Token t = head.take();
-                    if (t.kind == Token::Kind::name && t.text != "IN" && t.text != "OUT")
-                        routine.parameters.push_back(t.text);
+                    if (t.kind != Token::Kind::name) continue;
+                    auto& all = routine.parameters;
+                    if (!all.empty() && (t.text == "IN" || t.text == "OUT"))
+                        all.back().way = t.text == "IN" ? Parameter::Way::value : Parameter::Way::reference;
+                    else
+                        all.push_back({Parameter::Way::either, t.text, false, nullptr});
                 }
             } catch (const Misread&) {
             }
@@ -84,13 +64,26 @@ class Krl final : public Machine {
                 note(file, blocks.line().front().line, LineKind::understood);
                 blocks.next();
             }
-            if (routine.name.empty() || routines_.count(routine.name) > 0) continue;
             routine_order_.push_back(routine.name);
-            routines_[routine.name] = std::move(routine);
+            add_routine(std::move(routine));
         }
     }
 
   protected:
+    std::string module_name(const Source& source) const override {
+        std::string name = source.name.substr(0, source.name.rfind('.'));
+        std::transform(name.begin(), name.end(), name.begin(),
+                       [](unsigned char c) { return std::toupper(c); });
+        return name;
+    }
+    Value::Type type_of(const std::string& component) const override {
+        return is_krl_coordinate(component) && otherwise_typed_.count(component) == 0 ? Value::Type::real
+                                                                                      : Value::Type::any;
+    }
+    Value chained(const Value& a, const Value& b) override {
+        const auto p = krl_pose_of(a, Pose::Identity()), q = krl_pose_of(b, Pose::Identity());
+        return p && q ? krl_frame_value(*p * *q) : Value::unknown(!p ? a.text : b.text);
+    }
     bool moves(const std::string& word) const override {
         static const std::set<std::string> words = {"PTP",      "LIN",      "CIRC",      "PTP_REL", "LIN_REL",
                                                     "CIRC_REL", "SPTP",     "SLIN",      "SCIRC",   "SPL",
@@ -102,13 +95,14 @@ class Krl final : public Machine {
     }
 
     void begin() override {
-        globals_["$NULLFRAME"] = frame_value(Pose::Identity());
+        globals_["$NULLFRAME"] = krl_frame_value(Pose::Identity());
         for (const auto& [name, pose] : options_.frames) {
             const auto tokens = tokens_of(name, Dialect::krl);
             Cursor c(std::span<const Token>(tokens).first(tokens.size() - 1));
             try {
                 const auto place = read_expression(c, Dialect::krl);
-                assign(*place, frame_value(pose));
+                globals_.try_emplace(root_of(*place));
+                assign(*place, krl_frame_value(pose));
                 if (place->kind == Expr::Kind::name && place->text == "$BASE") {
                     set_frame({"$BASE", pose});
                     base_set_ = true;
@@ -125,9 +119,10 @@ class Krl final : public Machine {
             motion(c);
             return Flow::on;
         }
-        if (word == "EXIT" || word == "RETURN") {
-            note(LineKind::understood);
-            return word == "EXIT" ? Flow::leave : Flow::back;
+        if (word == "EXIT") return leave_loop();
+        if (word == "RETURN") {
+            c.take();
+            return give_back(c.done() ? Value{} : value_of(*read_expression(c, Dialect::krl)));
         }
         if (word == "GOTO") {
             note(LineKind::not_understood, "jumps are not followed");
@@ -149,7 +144,7 @@ class Krl final : public Machine {
             if (word == "SPLINE") with(c);
             note(LineKind::understood);
         } else if (declares(c)) {
-            declaration(c, false);
+            declaration(c, Reach::routine, false);
         } else if (s.tokens.size() == 2 && c.is(":", 1)) {
             note(LineKind::understood);  // a label
         } else {
@@ -168,27 +163,12 @@ class Krl final : public Machine {
     Value call(const Expr& e) override {
         std::vector<Value> a;
         for (const Argument& part : e.parts) a.push_back(part.value ? value_of(*part.value) : Value{});
-        if (e.text == ":" && a.size() == 2) {
-            const auto p = pose_of(a[0], Pose::Identity()), q = pose_of(a[1], Pose::Identity());
-            return p && q ? frame_value(*p * *q) : Value::unknown(!p ? a[0].text : a[1].text);
-        }
-        if (e.text == "INV_POS" && a.size() == 1) {
-            const auto p = pose_of(a[0], {});
-            return p ? frame_value(p->inverse()) : Value::unknown(shown(e));
-        }
         if ((e.text == "SBASE" || e.text == "STOOL") && a.size() == 1) {
             if (const auto n = a[0].as_number())
                 return numbered(e.text == "SBASE" ? "BASE_DATA" : "TOOL_DATA",
                                 static_cast<int>(std::clamp(*n, -1.0, 999.0)));
         }
-        const auto x = a.empty() ? std::optional<double>() : a[0].as_number();
-        if (x && a.size() == 1) {
-            if (e.text == "ABS") return Value::of(std::abs(*x));
-            if (e.text == "SQRT" && *x >= 0) return Value::of(std::sqrt(*x));
-            if (e.text == "SIN") return Value::of(std::sin(rad_from_deg(*x)));
-            if (e.text == "COS") return Value::of(std::cos(rad_from_deg(*x)));
-            if (e.text == "TAN") return Value::of(std::tan(rad_from_deg(*x)));
-        }
+        if (auto v = krl_function(e.text, a)) return *std::move(v);
         return Value::unknown(shown(e));
     }
 
@@ -203,41 +183,79 @@ class Krl final : public Machine {
                (is_type(c.peek().text) && c.peek(1).kind == Token::Kind::name);
     }
 
-    // Says which positions it gives, in order.
-    void declaration(Cursor& c, bool in_data_list) {
-        while (c.accept("DECL") || c.accept("GLOBAL") || c.accept("CONST")) {
-        }
+    static Value::Type number_type(const std::string& type) {
+        return type == "INT" ? Value::Type::integer : type == "REAL" ? Value::Type::real : Value::Type::any;
+    }
+
+    // Of a data list it says which positions it gives, in order; what is GLOBAL there is so where the list is PUBLIC.
+    void declaration(Cursor& c, Reach reach, bool is_public) {
+        const bool in_data_list = reach != Reach::routine;
+        for (; c.is("DECL") || c.is("GLOBAL") || c.is("CONST"); c.take())
+            if (c.is("GLOBAL") && in_data_list && is_public) reach = Reach::all;
+        if (c.is("STRUC")) return structure(c);
         const std::string type = c.name();
-        if (type == "STRUC" || type == "ENUM" || type == "SIGNAL" || type == "EXT" || type == "EXTFCT")
+        if (type == "ENUM" || type == "SIGNAL" || type == "EXT" || type == "EXTFCT")
             return note(LineKind::passed_over);
         do {
             const Token first = c.peek();
             if (first.kind != Token::Kind::name) throw Misread(first.text);
-            const auto place = read_expression(c, Dialect::krl);
-            if (c.accept("=")) {
-                assign(*place, value_of(*read_expression(c, Dialect::krl)));
-                if (in_data_list && (type == "E6POS" || type == "POS" || type == "FRAME"))
-                    positions_.push_back(first);
+            read_expression(c, Dialect::krl);  // NAME[3,4]
+            Value value;
+            value.type = number_type(type);
+            if (!in_data_list && is_parameter(first.text)) {
+                type_parameter(first.text, value.type);
+            } else {
+                if (c.accept("=")) {
+                    put_in(value, value_of(*read_expression(c, Dialect::krl)), first.text);
+                    if (in_data_list && (type == "E6POS" || type == "POS" || type == "FRAME"))
+                        positions_.push_back(first);
+                }
+                declare(first.text, std::move(value), reach);
             }
         } while (c.accept(","));
         note(LineKind::understood);
     }
 
+    // STRUC NAME INT X,Y, REAL D: its X is none of a frame.
+    void structure(Cursor& c) {
+        note(LineKind::passed_over);
+        c.take();
+        std::string type;
+        for (c.name(); !c.done();) {
+            const Token t = c.take();
+            if (t.kind != Token::Kind::name) continue;
+            if (c.peek().kind == Token::Kind::name)
+                type = t.text;
+            else if (type != "REAL")
+                otherwise_typed_.insert(t.text);
+        }
+    }
+
     void data_list(int file, const std::vector<std::vector<Token>>& lines) {
+        now_file_ = file;
+        with_data_.insert(module());
+        const std::vector<Token>& head = lines.front();
+        const bool system =
+            head.size() > 1 && head[1].text.starts_with('$');  // $CONFIG: all of it is everybody's
+        const bool is_public = head.size() > 2 && head[2].text == "PUBLIC";
+        const Reach reach = system ? Reach::all : Reach::module;
         for (const auto& tokens : lines) {
-            now_file_ = file, now_line_ = tokens.front().line;
+            now_line_ = tokens.front().line;
             Cursor c(tokens);
             try {
                 if (c.is("DEFDAT") || c.is("ENDDAT")) {
                     note(LineKind::understood);
+                } else if (c.is("STRUC")) {
+                    structure(c);
                 } else if (declares(c)) {
-                    declaration(c, true);
+                    declaration(c, reach, is_public);
                 } else if (c.is("EXT") || c.is("EXTFCT") || c.is("IMPORT") || c.is("SIGNAL") ||
-                           c.is("STRUC") || c.is("ENUM")) {
+                           c.is("ENUM")) {
                     note(LineKind::passed_over);
                 } else {
                     const auto place = read_expression(c, Dialect::krl);
                     c.expect("=");
+                    if (!variable(root_of(*place))) declare(root_of(*place), Value{}, reach);
                     assign(*place, value_of(*read_expression(c, Dialect::krl)));
                     note(LineKind::understood);
                 }
@@ -258,25 +276,29 @@ class Krl final : public Machine {
         }
         remark("a data list says no motions: its positions are taken in the order of their lines");
         routine_order_.push_back(all.name);
-        routines_[all.name] = std::move(all);
+        add_routine(std::move(all));
     }
 
     Value numbered(const std::string& list, int n) {
-        if (n == 0) return frame_value(Pose::Identity());
+        if (n == 0) return krl_frame_value(Pose::Identity());
         const Value* all = variable(list);
         const auto i = static_cast<std::size_t>(n - 1);
         const std::string name = fmt::format("{}[{}]", list, n);
-        if (!all || n < 1 || all->kind != Value::Kind::list || i >= all->parts.size() ||
-            !pose_of(all->parts[i], {}))
+        if (!all || n < 1 || all->kind != Value::Kind::list || i >= all->parts.size())
             return Value::unknown(name);
-        return all->parts[i];
+        const Value& v = all->parts[i];
+        if (krl_pose_of(v, {})) return v;
+        return Value::unknown(v.known() || !v.text.empty() ? name + "?"
+                                                           : name);  // ?: the program gave it a value
     }
 
-    void base(const Value& v, const std::string& name) {
+    // `computed`: of other values, which its name does not say.
+    void base(const Value& v, const std::string& name, bool computed = false) {
         base_set_ = true;
-        const auto pose = pose_of(v, {});
+        const auto pose = krl_pose_of(v, {});
         const bool null = pose && pose->isApprox(Pose::Identity(), 1e-12);
-        set_frame({null ? "" : name, pose});
+        globals_["$BASE"] = pose && !in_doubt() ? krl_frame_value(*pose) : Value::unknown("$BASE");
+        set_frame({null ? "" : name, pose, !pose && (computed || v.text.ends_with('?'))});
     }
     void ipo_mode(const Value& v) {
         if (v.text == "#TCP") fixed_tool_ = true;
@@ -294,7 +316,8 @@ class Krl final : public Machine {
         else
             base(Value::unknown(name), name + ".BASE_NO");
         const auto tool = number("TOOL_NO");
-        tool_ = tool ? fmt::format("TOOL_DATA[{}]", *tool) : name + ".TOOL_NO";
+        set_tool(tool ? fmt::format("TOOL_DATA[{}]", *tool) : name + ".TOOL_NO",
+                 tool ? numbered("TOOL_DATA", *tool) : Value{});
         if (const Value* mode = v.kind == Value::Kind::list ? v.part("IPO_FRAME") : nullptr) ipo_mode(*mode);
     }
 
@@ -302,23 +325,21 @@ class Krl final : public Machine {
         const Value value = value_of(what);
         assign(place, value);
         note(LineKind::understood);
-        const Expr* root = &place;
-        while (root->of) root = root->of.get();
+        const std::string root = root_of(place);
         const std::string name = value.known() && what.kind == Expr::Kind::record
-                                     ? fmt::format("{}, line {}", root->text, now_line_)
+                                     ? fmt::format("{}, line {}", root, now_line_)
                                  : value.known() || value.text.empty() ? shown(what)
                                                                        : value.text;
-        if (root->text == "$BASE") {
-            const Value* now = variable("$BASE");
-            base(now ? *now : Value{}, &place == root ? name : fmt::format("$BASE, line {}", now_line_));
-        } else if (root->text == "$TOOL") {
-            tool_ = name;
-        } else if (root->text == "$IPO_MODE") {
+        if (root == "$BASE") {
+            base(Value(globals_[root]), place.of ? fmt::format("$BASE, line {}", now_line_) : name,
+                 place.of || what.kind == Expr::Kind::binary);
+        } else if (root == "$TOOL") {
+            set_tool(place.of ? fmt::format("$TOOL, line {}", now_line_) : name,
+                     in_doubt() ? Value::unknown("?") : globals_[root]);
+        } else if (root == "$IPO_MODE") {
             ipo_mode(value);
-        } else if (root->text == "FDAT_ACT") {
+        } else if (root == "FDAT_ACT") {
             frame_data(value, shown(what));
-        } else if (root->text.starts_with('$')) {
-            note(LineKind::understood);
         }
     }
 
@@ -330,7 +351,7 @@ class Krl final : public Machine {
             if ((what == "#BASE" || what == "#TOOL") && n && *n >= 0 && *n < 1000) {
                 const int i = static_cast<int>(*n);
                 if (what == "#BASE") base(numbered("BASE_DATA", i), fmt::format("BASE_DATA[{}]", i));
-                if (what == "#TOOL") tool_ = fmt::format("TOOL_DATA[{}]", i);
+                if (what == "#TOOL") set_tool(fmt::format("TOOL_DATA[{}]", i), numbered("TOOL_DATA", i));
                 note(LineKind::understood);
             } else {
                 note(LineKind::passed_over);
@@ -338,10 +359,12 @@ class Krl final : public Machine {
             return Flow::on;
         }
         Flow flow = Flow::on;
-        if (enter(e.text, e.parts, flow))
+        if (enter(e.text, e.parts, flow)) {
             note(LineKind::understood);
-        else
+        } else {
             note(LineKind::passed_over, Text("{} is not in the files that were read", e.text));
+            lose(e.parts);
+        }
         return flow;
     }
 
@@ -392,7 +415,7 @@ class Krl final : public Machine {
         }
         t.joints =
             v.part("A1") || v.part("A2") || v.part("A3") || v.part("A4") || v.part("A5") || v.part("A6");
-        if (!t.joints) t.pose = pose_of(v, here());
+        if (!t.joints) t.pose = krl_pose_of(v, here());
         return t;
     }
     // LIN_REL: along the base's axes, or with #TOOL the tool's.
@@ -402,7 +425,7 @@ class Krl final : public Machine {
         const Value v = value_of(*e);
         t.unknown = v.known() ? shown(*e) : v.text;
         t.joints = v.kind == Value::Kind::list && v.part("A1");
-        if (!t.joints) t.step = pose_of(v, Pose::Identity());
+        if (!t.joints) t.step = krl_pose_of(v, Pose::Identity());
         return t;
     }
 
@@ -461,6 +484,7 @@ class Krl final : public Machine {
     }
 
     std::vector<Token> positions_;
+    std::set<std::string> otherwise_typed_;  // components that a STRUC calls as a frame's
     bool base_set_ = false;
 };
 

@@ -28,6 +28,11 @@ int weight(LineKind kind) {
 Expected<ProgramPath> Machine::run(std::vector<Source> sources, const std::string& name) {
     sources_ = std::move(sources);
     lines_.resize(sources_.size());
+    std::map<std::string, int> modules;
+    for (const Source& source : sources_)
+        modules_of_.push_back(
+            modules.try_emplace(module_name(source), static_cast<int>(modules.size())).first->second);
+    modules_.resize(modules.size());
     std::vector<std::string> texts(sources_.size());
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         for (std::string& line : sources_[i].lines) {
@@ -43,7 +48,9 @@ Expected<ProgramPath> Machine::run(std::vector<Source> sources, const std::strin
     for (std::size_t i = 0; i < sources_.size(); ++i) load(static_cast<int>(i), texts[i]);
     SEAM_TRY(const auto routine, chosen_routine(name));
     path_.routine = routine;
+    now_file_ = 0;
     begin();
+    if (!this->routine(routine, 0)) now_file_ = routines_.find(routine)->second.file;
     Flow flow = Flow::on;
     std::vector<Argument> none;
     enter(routine, none, flow);
@@ -70,6 +77,7 @@ Expected<ProgramPath> Machine::run(std::vector<Source> sources, const std::strin
 }
 
 void Machine::note(int file, int line, LineKind kind, Text why) {
+    if (quiet_ > 0) return;
     auto& lines = lines_[static_cast<std::size_t>(file)];
     auto [at, fresh] = lines.try_emplace(line);
     ProgramLine& l = at->second;
@@ -93,7 +101,7 @@ void Machine::gap(Text why) {
 }
 
 void Machine::remark(Text text) {
-    if (std::find(path_.remarks.begin(), path_.remarks.end(), text) == path_.remarks.end())
+    if (quiet_ == 0 && std::find(path_.remarks.begin(), path_.remarks.end(), text) == path_.remarks.end())
         path_.remarks.push_back(std::move(text));
 }
 
@@ -103,10 +111,13 @@ bool Machine::holds_motion(const Block& block, std::set<std::string>& seen) cons
             if (holds_motion(inner, seen)) return true;
         if (s.tokens.empty()) continue;
         if (moves(s.tokens.front().text)) return true;
-        const auto routine = routines_.find(s.tokens.front().text);
-        if (routine != routines_.end() && seen.size() < 1000 && seen.insert(routine->first).second &&
-            holds_motion(routine->second.body, seen))
-            return true;
+        for (std::size_t i = 0; i < s.tokens.size(); ++i) {
+            const bool calls = i == 0 || (i + 1 < s.tokens.size() && s.tokens[i + 1].text == "(");
+            const Routine* called = calls ? routine(s.tokens[i].text, s.file) : nullptr;
+            if (called && seen.size() < 1000 && seen.insert(called->name).second &&
+                holds_motion(called->body, seen))
+                return true;
+        }
     }
     return false;
 }
@@ -143,8 +154,10 @@ Expected<std::string> Machine::chosen_routine(const std::string& where) const {
     std::vector<std::string> can, alone;
     for (const std::string& name : routine_order_) {
         std::set<std::string> seen = {name};
-        const Routine& routine = routines_.at(name);
-        if (routine.file != 0 || !holds_motion(routine.body, seen)) continue;
+        const Routine* candidate = routine(name, 0);
+        if (!candidate || candidate->file != 0 || !holds_motion(candidate->body, seen) ||
+            std::find(can.begin(), can.end(), name) != can.end())
+            continue;
         can.push_back(name);
         if (called.count(name) == 0) alone.push_back(name);
     }

@@ -1,6 +1,7 @@
 // The run through a program's statements: routines, branches, loops, and what of them only the cell knows.
 
 #include <algorithm>
+#include <utility>
 
 #include "devices/robot_path/machine.h"
 
@@ -8,37 +9,13 @@ namespace seamwright::program_path {
 namespace {
 
 constexpr std::size_t kMostSteps = 5'000'000;  // statements that run; within a loop one counts ten
-constexpr std::size_t kDeepestCalls = 30;
 
 }  // namespace
 
-bool Machine::enter(const std::string& name, const std::vector<Argument>& arguments, Flow& flow) {
-    const auto at = routines_.find(name);
-    if (at == routines_.end()) return false;
-    flow = Flow::on;
-    if (scopes_.size() >= kDeepestCalls) {
-        too_long_ = true;
-        return true;
-    }
-    const Routine& routine = at->second;
-    std::map<std::string, Value> scope;
-    for (const std::string& parameter : routine.parameters) scope[parameter] = Value::unknown(parameter);
-    for (const auto& [parameter, value] : routine.defaults)
-        if (value) scope[parameter] = value_of(*value);
-    std::size_t place = 0;
-    for (const Argument& a : arguments) {
-        if (a.optional) continue;
-        const std::string parameter = !a.name.empty()                     ? a.name
-                                      : place < routine.parameters.size() ? routine.parameters[place++]
-                                                                          : "";
-        if (!parameter.empty() && a.value) scope[parameter] = value_of(*a.value);
-    }
-    scopes_.push_back(std::move(scope));
-    const int file = now_file_, line = now_line_;
-    run_block(routine.body);
-    now_file_ = file, now_line_ = line;
-    scopes_.pop_back();
-    return true;
+bool Machine::spend(std::size_t steps) {
+    steps_ += steps;
+    too_long_ = too_long_ || steps_ > kMostSteps;
+    return !too_long_;
 }
 
 Machine::Flow Machine::run_block(const Block& block) {
@@ -50,8 +27,7 @@ Machine::Flow Machine::run_block(const Block& block) {
 }
 
 Machine::Flow Machine::run_statement(const Statement& s) {
-    if ((steps_ += loops_ > 0 ? 10 : 1) > kMostSteps) too_long_ = true;
-    if (too_long_ || too_many_) return Flow::back;
+    if (!spend(loops_ > 0 ? 10 : 1) || too_many_ || over_) return Flow::halt;
     now_file_ = s.file, now_line_ = s.line;
     try {
         switch (s.kind) {
@@ -77,12 +53,18 @@ Machine::Flow Machine::run_statement(const Statement& s) {
 void Machine::run_in_doubt(const Statement& s, const Text& why, std::size_t from) {
     const Text outer = doubt_why_;
     if (doubt_ == 0) doubt_why_ = why;
+    bool jumps = false;
     for (std::size_t i = from; i < s.branches.size(); ++i) {
         ++doubt_;
-        run_block(s.branches[i].second);
+        const Flow flow = run_block(s.branches[i].second);
         --doubt_;
+        jumps = jumps || flow == Flow::back || flow == Flow::again || (flow == Flow::leave && counted_);
     }
-    doubt_why_ = outer;
+    // A routine that does not move is in doubt to its end; of one that does the jump has the note.
+    if (jumps && !in_moving_routine())
+        ++doubt_;
+    else
+        doubt_why_ = outer;
 }
 
 Machine::Flow Machine::run_branch(const Statement& s) {
@@ -104,13 +86,23 @@ Machine::Flow Machine::run_branch(const Statement& s) {
 }
 
 // The body of a loop once more.
-Machine::Flow Machine::run_again(const Block& body) {
-    if ((steps_ += 10) > kMostSteps) too_long_ = true;
-    if (too_long_) return Flow::back;
+Machine::Flow Machine::run_again(const Block& body, bool counted) {
+    if (!spend(10)) return Flow::halt;
+    const bool outer = std::exchange(counted_, counted);
     ++loops_;
     const Flow flow = run_block(body);
     --loops_;
-    return flow;
+    counted_ = outer;
+    return flow == Flow::again ? Flow::on : flow;
+}
+
+// Of RAPID the loop's own, which hides another of its name while the loop runs.
+void Machine::count(const std::string& name, Value value) {
+    if (loops_declare_ && depth_ > 0) return declare(name, std::move(value), Reach::routine);
+    Expr place;
+    place.kind = Expr::Kind::name;
+    place.text = name;
+    assign(place, std::move(value));
 }
 
 Machine::Flow Machine::run_count(const Statement& s) {
@@ -118,16 +110,35 @@ Machine::Flow Machine::run_count(const Statement& s) {
     const auto from = value_of(*s.from).as_number(), to = value_of(*s.to).as_number();
     auto step = s.step ? value_of(*s.step).as_number() : std::optional(1.0);
     if (from && to && !s.step && dialect_ == Dialect::rapid && *from > *to) step = -1;
+    const bool hides = loops_declare_ && depth_ > 0;
+    std::map<std::string, Value>::node_type hidden;
+    if (hides) hidden = scopes_[depth_ - 1].values.extract(s.variable);
+    Flow flow = Flow::on;
     if (!from || !to || !step || *step == 0) {
+        count(s.variable, Value::unknown(s.variable));
         run_in_doubt(s, "how often this loop runs is known only in the cell");
-        return Flow::on;
+    } else {
+        flow = turns(s, *from, *to, *step);
     }
-    for (double i = *from; *step > 0 ? i <= *to : i >= *to; i += *step) {
-        declare(s.variable, Value::of(i), dialect_ == Dialect::rapid);
-        const Flow flow = run_again(s.branches.front().second);
-        if (flow == Flow::leave) break;
-        if (flow == Flow::back) return flow;
+    if (hides) {
+        auto& own = scopes_[depth_ - 1].values;
+        own.erase(s.variable);
+        if (hidden) own.insert(std::move(hidden));
     }
+    return flow;
+}
+
+Machine::Flow Machine::turns(const Statement& s, double from, double to, double step) {
+    for (double i = from; step > 0 ? i <= to : i >= to; i += step) {
+        Value now = Value::of(i);
+        now.type = Value::Type::integer;
+        count(s.variable, now);
+        const Flow flow = run_again(s.branches.front().second, true);
+        if (flow == Flow::leave) return Flow::on;
+        if (flow != Flow::on) return flow;
+    }
+    // KRL's manual does not say what it is behind the last turn.
+    if (dialect_ == Dialect::krl) count(s.variable, Value::unknown(s.variable));
     return Flow::on;
 }
 
@@ -150,9 +161,8 @@ Machine::Flow Machine::run_loop(const Statement& s) {
             now_file_ = file, now_line_ = line;
             return begin == path_.points.size() ? Flow::on : run_turns(s, begin);
         }
-        const Flow flow = run_again(block);
-        if (flow == Flow::leave) return Flow::on;
-        if (flow == Flow::back) return flow;
+        const Flow flow = run_again(block, true);
+        if (flow != Flow::on) return flow == Flow::leave ? Flow::on : flow;
     }
 }
 
@@ -162,7 +172,7 @@ Machine::Flow Machine::run_unknown_loop(const Statement& s) {
     const int file = now_file_, line = now_line_;
     const Flow flow = run_again(s.branches.front().second);
     now_file_ = file, now_line_ = line;
-    if (flow == Flow::back) return flow;
+    if (flow == Flow::back || flow == Flow::halt) return flow;
     const Flow turns = begin == path_.points.size() || flow == Flow::leave ? Flow::on : run_turns(s, begin);
     forget(s.branches.front().second);
     return turns;
@@ -175,8 +185,7 @@ Machine::Flow Machine::run_turns(const Statement& s, std::size_t begin) {
     const int file = now_file_, line = now_line_;
     const Flow flow = run_again(s.branches.front().second);
     now_file_ = file, now_line_ = line;
-    if (flow == Flow::back) return flow;
-    if (flow == Flow::leave) return Flow::on;
+    if (flow != Flow::on) return flow == Flow::leave ? Flow::on : flow;
     bool same = path_.points.size() - first == first - begin;
     for (std::size_t i = begin; same && i < first; ++i) {
         const ProgramPoint &p = path_.points[i], &q = path_.points[i + (first - begin)];
@@ -205,20 +214,22 @@ void Machine::drop_points(std::size_t from) {
     for (JointMove& j : joints_) j.before = std::min(j.before, from);
 }
 
-// What a block gives values to is not known any more.
+// What a block gives values to, itself or by what it calls, is not known any more.
 void Machine::forget(const Block& block) {
-    for (const Statement& s : block) {
-        for (const auto& [condition, inner] : s.branches) forget(inner);
-        std::size_t at = 0;
-        while (at < s.tokens.size() && (s.tokens[at].text == "global" || s.tokens[at].text == "local")) ++at;
-        if (at >= s.tokens.size() || s.tokens[at].kind != Token::Kind::name) continue;
-        const bool gives = std::any_of(s.tokens.begin() + static_cast<std::ptrdiff_t>(at), s.tokens.end(),
-                                       [](const Token& t) { return t.text == "=" || t.text == ":="; });
-        const std::string& name = s.tokens[at].text;
-        if (!gives || !variable(name)) continue;
-        Value& v = !scopes_.empty() && scopes_.back().count(name) > 0 ? scopes_.back()[name] : globals_[name];
-        v = Value::unknown(name);
-    }
+    if (doubt_ > 0) return;  // nor was it before
+    const auto here = here_;
+    const NamedPose frame = frame_;
+    const std::string tool = tool_;
+    const bool fixed_tool = fixed_tool_;
+    const int file = now_file_, line = now_line_;
+    ++doubt_, ++quiet_;
+    run_block(block);
+    --doubt_, --quiet_;
+    now_file_ = file, now_line_ = line;
+    here_ = here;
+    frame_ = frame;
+    tool_ = tool;
+    fixed_tool_ = fixed_tool;
 }
 
 }  // namespace seamwright::program_path

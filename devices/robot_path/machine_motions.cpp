@@ -1,5 +1,7 @@
 // Where the robot goes: points, circles, joint values and the frame they stand in.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -31,6 +33,7 @@ void Machine::put(const Pose& frame_from_tool, ProgramMotion motion, const std::
 void Machine::move(const Pose& frame_from_tool, ProgramMotion motion, const std::string& name) {
     if (doubt_ > 0) return gap(doubt_why_);
     if (fixed_tool_) return gap("the tool stands fixed in the room here and the robot moves the part");
+    if (frame_.changed) return gap(Text("{} is changed here to what the program does not say", frame_.name));
     if (!frame_from_tool.matrix().allFinite() || frame_from_tool.translation().cwiseAbs().maxCoeff() > 1e5)
         return gap("the point lies beyond 100 m");
     put(frame_from_tool, motion, name);
@@ -94,9 +97,19 @@ void Machine::settle_joint_values() {
     }
 }
 
+void Machine::set_tool(const std::string& name, const Value& value) {
+    constexpr std::size_t kMost = 100;
+    auto& all = tool_values_[name];
+    const auto at = static_cast<std::size_t>(std::find(all.begin(), all.end(), value) - all.begin());
+    if (at == all.size() && at < kMost) all.push_back(value);
+    tool_ = at == 0 ? name : fmt::format("{} ({})", name, at + 1);
+}
+
 void Machine::set_frame(NamedPose frame) {
-    if (doubt_ > 0) frame = {frame.name + "?", std::nullopt};
-    if (here_ && frame.name != frame_.name) {
+    if (doubt_ > 0) frame = {frame.name + "?", std::nullopt, frame_.name == frame.name + "?"};
+    const bool same = frame.pose && frame_.pose ? frame.pose->isApprox(*frame_.pose, 1e-12)
+                                                : frame.name == frame_.name && !frame.pose && !frame_.pose;
+    if (here_ && (!same || frame.changed)) {
         if (frame.pose && frame_.pose)
             here_ = frame.pose->inverse() * *frame_.pose * *here_;
         else

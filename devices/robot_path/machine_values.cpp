@@ -8,17 +8,17 @@
 namespace seamwright::program_path {
 namespace {
 
-constexpr long kLargestIndex = 100'000;  // of an array that is filled element by element
+// Of a value that is copied: a point or a short list comes with its statement.
+constexpr std::size_t kSmall = 100, kLargest = 1'000'000;
+constexpr int kDeepestList = 30;  // lists within lists
 
-// By place, as RAPID writes its records.
-int place_of(std::string_view component) {
-    static const std::map<std::string_view, int> places = {
-        {"trans", 0},  {"rot", 1},     {"robconf", 2}, {"extax", 3}, {"x", 0},
-        {"y", 1},      {"z", 2},       {"q1", 0},      {"q2", 1},    {"q3", 2},
-        {"q4", 3},     {"robhold", 0}, {"ufprog", 1},  {"ufmec", 2}, {"uframe", 3},
-        {"oframe", 4}, {"tframe", 1},  {"tload", 2},   {"robax", 0}};
-    const auto at = places.find(component);
-    return at == places.end() ? -1 : at->second;
+// Its numbers and lists, nested ones included; more than kLargest where it is larger or nested too deep.
+std::size_t cells(const Value& v, int depth = 0) {
+    if (depth > kDeepestList) return kLargest + 1;
+    std::size_t all = 1;
+    for (const Value& part : v.parts)
+        if ((all += cells(part, depth + 1)) > kLargest) break;
+    return all;
 }
 
 }  // namespace
@@ -80,110 +80,19 @@ std::optional<std::array<double, 6>> six_numbers(const Value& value) {
     return n;
 }
 
-const Value* Machine::variable(const std::string& name) const {
-    if (volatile_.count(name) > 0) return nullptr;
-    if (!scopes_.empty()) {
-        const auto local = scopes_.back().find(name);
-        if (local != scopes_.back().end()) return &local->second;
-    }
-    const auto global = globals_.find(name);
-    return global == globals_.end() ? nullptr : &global->second;
-}
-
-void Machine::declare(const std::string& name, Value value, bool local) {
-    if (local && !scopes_.empty())
-        scopes_.back()[name] = std::move(value);
-    else
-        globals_[name] = std::move(value);
-}
-
-const Value* Machine::find(const Expr& e) {
-    if (e.kind == Expr::Kind::name) return variable(e.text);
-    if (e.kind != Expr::Kind::index && e.kind != Expr::Kind::component) return nullptr;
-    const Value* of = find(*e.of);
-    if (!of || of->kind != Value::Kind::list) return nullptr;
-    if (e.kind == Expr::Kind::component) {
-        if (!of->names.empty()) return of->part(e.text);
-        const int at = place_of(e.text);
-        return at >= 0 && static_cast<std::size_t>(at) < of->parts.size()
-                   ? &of->parts[static_cast<std::size_t>(at)]
-                   : nullptr;
-    }
-    const int first = dialect_ == Dialect::urscript ? 0 : 1;
-    for (const Argument& index : e.parts) {
-        if (!index.value) return nullptr;
-        const auto n = value_of(*index.value).as_number();
-        if (!n || of->kind != Value::Kind::list || *n < first ||
-            *n - first >= static_cast<double>(of->parts.size()))
-            return nullptr;
-        of = &of->parts[static_cast<std::size_t>(*n - first)];
-    }
-    return of;
-}
-
-void Machine::assign(const Expr& place, Value value) {
-    if (doubt_ > 0) value = Value::unknown(shown(place));
-    // The way down to the variable: its name, then indices and components.
-    std::vector<const Expr*> way;
-    for (const Expr* e = &place;; e = e->of.get()) {
-        way.push_back(e);
-        if (e->kind == Expr::Kind::name) break;
-        if (e->kind != Expr::Kind::index && e->kind != Expr::Kind::component) return;
-    }
-    const std::string& name = way.back()->text;
-    Value* at = nullptr;
-    if (!scopes_.empty() && scopes_.back().count(name) > 0)
-        at = &scopes_.back()[name];
-    else
-        at = &globals_[name];
-    for (auto e = way.rbegin() + 1; e != way.rend(); ++e) {
-        if ((*e)->kind == Expr::Kind::component) {
-            if (at->kind != Value::Kind::list) {
-                *at = {};
-                at->kind = Value::Kind::list;
-            }
-            const int by_place = place_of((*e)->text);
-            if (dialect_ == Dialect::krl || by_place < 0) {
-                const auto known = std::find(at->names.begin(), at->names.end(), (*e)->text);
-                if (known == at->names.end()) {
-                    at->names.resize(at->parts.size());
-                    at->names.push_back((*e)->text);
-                    at->parts.emplace_back();
-                    at = &at->parts.back();
-                } else {
-                    at = &at->parts[static_cast<std::size_t>(known - at->names.begin())];
-                }
-            } else {
-                const auto place_in = static_cast<std::size_t>(by_place);
-                if (at->parts.size() <= place_in) at->parts.resize(place_in + 1);
-                at = &at->parts[place_in];
-            }
-            continue;
-        }
-        const int first = dialect_ == Dialect::urscript ? 0 : 1;
-        for (const Argument& index : (*e)->parts) {
-            if (!index.value) return;  // NAME[]="text" of KRL
-            const auto n = value_of(*index.value).as_number();
-            if (!n || *n < first || *n - first >= kLargestIndex) {
-                *at = Value::unknown(name);  // any of its elements
-                return;
-            }
-            const auto i = static_cast<std::size_t>(*n - first);
-            if (at->kind != Value::Kind::list) {
-                *at = {};
-                at->kind = Value::Kind::list;
-            }
-            if (at->parts.size() <= i) at->parts.resize(i + 1);
-            at = &at->parts[i];
-        }
-    }
-    *at = std::move(value);
+bool Machine::afford(const Value& copied) {
+    const std::size_t size = cells(copied);
+    if (size > kLargest) return too_long_ = true, false;
+    return spend(size > kSmall ? size : 0);
 }
 
 Value Machine::value_of(const Expr& e) {
     switch (e.kind) {
-        case Expr::Kind::number:
-            return Value::of(e.number);
+        case Expr::Kind::number: {
+            Value v = Value::of(e.number);
+            if (dialect_ == Dialect::krl) v.type = e.whole ? Value::Type::integer : Value::Type::real;
+            return v;
+        }
         case Expr::Kind::truth:
             return Value::of_truth(e.number != 0);
         case Expr::Kind::text:
@@ -196,26 +105,41 @@ Value Machine::value_of(const Expr& e) {
             v.pose = e.kind == Expr::Kind::pose;
             v.parts.reserve(e.parts.size());
             for (const Argument& part : e.parts) {
-                v.parts.push_back(part.value ? value_of(*part.value) : Value{});
-                if (e.kind == Expr::Kind::record) v.names.push_back(part.name);
+                Value value = part.value ? value_of(*part.value) : Value{};
+                if (e.kind != Expr::Kind::record) {
+                    v.parts.push_back(std::move(value));
+                    continue;
+                }
+                v.names.push_back(part.name);
+                v.parts.emplace_back().type = type_of(part.name);
+                put_in(v.parts.back(), std::move(value), part.name);
             }
-            return v;
+            return afford(v) ? v : Value::unknown(shown(e));
         }
         case Expr::Kind::name:
         case Expr::Kind::index:
         case Expr::Kind::component: {
             const Value* found = find(e);
-            if (found && found->known()) return *found;
+            if (found && found->known()) return afford(*found) ? *found : Value::unknown(shown(e));
             if (found && !found->text.empty()) return Value::unknown(found->text);
             return Value::unknown(shown(e));
         }
-        case Expr::Kind::call:
-            return call(e);
+        case Expr::Kind::call: {
+            Value v = Value::unknown(shown(e));
+            Flow flow = Flow::on;
+            if (!enter(e.text, e.parts, flow, &v)) v = call(e);
+            if (dialect_ == Dialect::krl && v.type == Value::Type::any && !routine(e.text, now_file_))
+                v.type = Value::Type::real;
+            return v;
+        }
         case Expr::Kind::unary: {
             const Value v = value_of(*e.parts[0].value);
             if (e.text == "-") {
                 const auto n = v.as_number();
-                return n ? Value::of(-*n) : Value::unknown(shown(e));
+                if (!n) return Value::unknown(shown(e));
+                Value minus = v;
+                minus.number = -*n;
+                return minus;
             }
             const auto t = v.as_truth();
             return t ? Value::of_truth(!*t) : Value::unknown(shown(e));
@@ -225,16 +149,33 @@ Value Machine::value_of(const Expr& e) {
     }
 }
 
+// INT and INT is INT in KRL. Where a type is not known, neither is what hangs on it.
+Value Machine::arithmetic(const std::string& op, const Value& a, const Value& b, const Expr& e) const {
+    using Type = Value::Type;
+    const double x = a.number, y = b.number;
+    const bool divides = op == "/" || op == "%" || op == "div" || op == "mod";
+    if (divides && y == 0) return Value::unknown(shown(e));
+    Value v = Value::of(op == "+"     ? x + y
+                        : op == "-"   ? x - y
+                        : op == "*"   ? x * y
+                        : op == "/"   ? x / y
+                        : op == "div" ? std::trunc(x / y)
+                                      : std::fmod(x, y));
+    if (dialect_ != Dialect::krl) return v;
+    const bool both = a.type == Type::integer && b.type == Type::integer,
+               real = a.type == Type::real || b.type == Type::real;
+    v.type = both ? Type::integer : real ? Type::real : Type::any;
+    if (v.type != Type::real && v.number != std::trunc(v.number)) {
+        if (v.type == Type::any) return Value::unknown(shown(e));
+        v.number = std::trunc(v.number);
+    }
+    return v;
+}
+
 Value Machine::binary(const Expr& e) {
     const std::string& op = e.text;
     const Value a = value_of(*e.parts[0].value), b = value_of(*e.parts[1].value);
-    if (op == ":") {  // frames of KRL
-        Expr product;
-        product.kind = Expr::Kind::call;
-        product.text = ":";
-        product.parts = e.parts;
-        return call(product);
-    }
+    if (op == ":") return chained(a, b);  // frames of KRL
     if (const auto x = a.as_truth(), y = b.as_truth(); x || y) {
         if (op == "or" || op == "OR") {
             if (x && y) return Value::of_truth(*x || *y);
@@ -272,12 +213,8 @@ Value Machine::binary(const Expr& e) {
         return v;
     }
     if (!x || !y) return Value::unknown(a.known() ? (b.known() ? shown(e) : b.text) : a.text);
-    if (op == "+") return Value::of(*x + *y);
-    if (op == "-") return Value::of(*x - *y);
-    if (op == "*") return Value::of(*x * *y);
-    if (op == "/" && *y != 0) return Value::of(*x / *y);
-    if (op == "div" && *y != 0) return Value::of(std::trunc(*x / *y));
-    if ((op == "mod" || op == "%") && *y != 0) return Value::of(std::fmod(*x, *y));
+    if (op == "+" || op == "-" || op == "*" || op == "/" || op == "%" || op == "div" || op == "mod")
+        return arithmetic(op, a, b, e);
     if (op == "==" || op == "=") return Value::of_truth(*x == *y);
     if (op == "<>" || op == "!=") return Value::of_truth(*x != *y);
     if (op == "<") return Value::of_truth(*x < *y);

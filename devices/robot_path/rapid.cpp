@@ -86,6 +86,8 @@ Rapid::Rapid(const ProgramPathOptions& options) : Machine(Dialect::rapid, option
     globals_["wobj0"] =
         Value::list({Value::of_truth(false), Value::of_truth(true), Value::of_text(""), zero, zero});
     globals_["tool0"] = Value::list({Value::of_truth(true), zero});
+    for (const char* name : {"wobj0", "tool0"}) globals_[name].constant = true;
+    loops_declare_ = true;
 }
 
 bool Rapid::moves(const std::string& word) const {
@@ -97,8 +99,8 @@ void Rapid::begin() {
         std::string folded = name;
         std::transform(folded.begin(), folded.end(), folded.begin(),
                        [](unsigned char c) { return std::tolower(c); });
-        globals_[folded] = Value::list({Value::of_truth(false), Value::of_truth(true), Value::of_text(""),
-                                        rapid_pose_value(pose), rapid_pose_value(Pose::Identity())});
+        impose(folded, Value::list({Value::of_truth(false), Value::of_truth(true), Value::of_text(""),
+                                    rapid_pose_value(pose), rapid_pose_value(Pose::Identity())}));
     }
 }
 
@@ -111,15 +113,19 @@ Machine::Flow Rapid::execute(const Statement& s) {
         return Flow::on;
     }
     if (word == "return") {
+        c.take();
+        return give_back(c.done() ? Value{} : value_of(*read_expression(c, Dialect::rapid)));
+    }
+    if (word == "exit" || word == "exitcycle") {  // the next cycle begins anew
         note(LineKind::understood);
-        return Flow::back;
+        return Flow::halt;
     }
-    if (word == "exit" || word == "exitcycle" || word == "stop" || word == "break" || word == "raise" ||
-        word == "trynext" || word == "retry" || word == "connect" || word == "alias") {
+    if (word == "stop" || word == "break" || word == "trynext" || word == "retry" || word == "connect" ||
+        word == "alias") {  // Stop goes on at the start key
         note(LineKind::passed_over);
-        return word == "exit" ? Flow::back : Flow::on;
+        return Flow::on;
     }
-    if (word == "goto") {
+    if (word == "goto" || word == "raise") {
         note(LineKind::not_understood, "jumps are not followed");
         return Flow::on;
     }
@@ -231,14 +237,33 @@ bool Rapid::declares(const Cursor& c) {
 void Rapid::declaration(Cursor& c) {
     const bool local = c.accept("local");
     if (!local) c.accept("task");
-    c.take();
+    const std::string kind = c.take().text;
     const std::string type = c.name();
     const std::string name = c.name();
-    if (c.accept("{")) read_arguments(c, Dialect::rapid, "}");
+    const bool array = c.accept("{");
+    if (array) read_arguments(c, Dialect::rapid, "}");
     Value value = Value::unknown(name);
-    if (c.accept(":=")) value = value_of(*read_expression(c, Dialect::rapid));
-    if (value.known() || !variable(name)) declare(name, std::move(value), true);
+    if (c.accept(":="))
+        value = value_of(*read_expression(c, Dialect::rapid));
+    else if (!array && kind == "var" && type == "num" && in_routine())
+        value = Value::of(0);  // as the manual says
+    value.constant = kind == "const";
+    declare(name, std::move(value), in_routine() ? Reach::routine : local ? Reach::module : Reach::all);
     note(LineKind::understood);
+}
+
+// Incr n; Add n, 5; nullopt: none of them.
+std::optional<Value> Rapid::counted(const std::string& name, const std::vector<Argument>& arguments) {
+    const bool add = name == "add";
+    if (!add && name != "incr" && name != "decr" && name != "clear") return {};
+    if (arguments.size() != (add ? 2U : 1U)) throw Misread("arguments");
+    for (const Argument& a : arguments)
+        if (!a.value) throw Misread("arguments");
+    if (name == "clear") return Value::of(0);
+    const auto n = value_of(*arguments[0].value).as_number(),
+               by = add ? value_of(*arguments[1].value).as_number()
+                        : std::optional(name == "incr" ? 1.0 : -1.0);
+    return n && by ? Value::of(*n + *by) : Value::unknown(shown(*arguments[0].value));
 }
 
 Machine::Flow Rapid::instruction_call(const std::string& name, const std::vector<Argument>& arguments) {
@@ -261,17 +286,21 @@ Machine::Flow Rapid::instruction_call(const std::string& name, const std::vector
             note(LineKind::understood);
             return flow;
         }
+        if (auto value = counted(name, arguments)) {
+            assign(*arguments[0].value, *std::move(value));
+            note(LineKind::understood);
+            return Flow::on;
+        }
         static const std::set<std::string> idle = {
-            "confl",   "confj",     "singarea", "accset",   "velset",       "waittime", "waitdi",
-            "waitdo",  "waituntil", "setdo",    "set",      "reset",        "setgo",    "setao",
-            "pulsedo", "tpwrite",   "tperase",  "gripload", "speedrefresh", "triggio",  "triggequip",
-            "waitrob", "clkstart",  "clkstop",  "clkreset", "isignaldi",    "idelete",  "incr",
-            "decr",    "add",       "clear",    "motsup",   "pathaccset",   "acttool",  "isleep",
-            "iwatch",  "setdi",     "errwrite"};
-        if (idle.count(name) > 0)
-            note(LineKind::passed_over);
-        else
-            note(LineKind::passed_over, Text("{} is not in the files that were read", name));
+            "confl",      "confj",     "singarea", "accset",   "velset",       "waittime", "waitdi",
+            "waitdo",     "waituntil", "setdo",    "set",      "reset",        "setgo",    "setao",
+            "pulsedo",    "tpwrite",   "tperase",  "gripload", "speedrefresh", "triggio",  "triggequip",
+            "waitrob",    "clkstart",  "clkstop",  "clkreset", "isignaldi",    "idelete",  "motsup",
+            "pathaccset", "acttool",   "isleep",   "iwatch",   "setdi",        "errwrite"};
+        const bool known = idle.count(name) > 0;
+        note(LineKind::passed_over, known ? Text() : Text("{} is not in the files that were read", name));
+        for (const Argument& a : arguments)  // \TimeFlag:=late
+            if (!known || (a.optional && a.value)) lose({a});
     }
     return Flow::on;
 }
@@ -303,9 +332,10 @@ void Rapid::motion(const Instruction& how, const std::vector<Argument>& argument
     if (places.size() < count + 1) throw Misread("too few arguments");
     // The tool stands last.
     const Expr& tool = *places.back()->value;
-    tool_ = shown(tool);
     const Value tool_data = value_of(tool);
-    if (tool_data.text != tool_ && !tool_data.known() && !tool_data.text.empty()) tool_ = tool_data.text;
+    const bool has_frame = tool_data.kind == Value::Kind::list && tool_data.parts.size() > 1;
+    set_tool(tool_data.known() || tool_data.text.empty() ? shown(tool) : tool_data.text,
+             has_frame ? tool_data.parts[1] : Value{});
     fixed_tool_ = truth_at(tool_data, 0) == false;
     if (how.absolute) return joint_values();
     NamedPose frame{"", Pose::Identity()};
@@ -317,6 +347,7 @@ void Rapid::motion(const Instruction& how, const std::vector<Argument>& argument
         if (data.known() && truth_at(data, 1) == false)
             return gap(Text("{} moves with a positioner", frame.name));
         if (frame.name == "wobj0") frame.name.clear();
+        frame.changed = !frame.pose && (data.known() || data.text.ends_with('?'));
     }
     set_frame(std::move(frame));
     std::vector<Pose> poses;

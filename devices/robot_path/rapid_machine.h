@@ -41,8 +41,10 @@ class Rapid final : public Machine {
     // A statement without blocks, up to its semicolon.
     Statement one(Cursor& c);
     Statement statement(Cursor& c, int depth);
-    void routine(Cursor& c);
+    void routine(Cursor& c, bool own);
+    using Machine::routine;
 
+    std::optional<Value> counted(const std::string& name, const std::vector<Argument>& arguments);
     Flow instruction_call(const std::string& name, const std::vector<Argument>& arguments);
 
     // base_from_frame of a work object; nullopt: it moves with the robot or a positioner, or is not known.

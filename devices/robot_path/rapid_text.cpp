@@ -19,8 +19,9 @@ void Rapid::load(int file, std::string_view text) {
         const Token t = c.peek();
         std::size_t skip = c.is("local") || c.is("task") ? 1 : 0;
         if (c.is("proc", skip) || c.is("func", skip) || c.is("trap", skip)) {
+            const bool own = skip > 0 && c.is("local");
             for (; skip > 0; --skip) c.take();
-            routine(c);
+            routine(c, own);
         } else if (c.is("module")) {
             note(file_, t.line, LineKind::understood);
             while (!c.done() && c.peek().line == t.line) c.take();
@@ -163,8 +164,9 @@ Statement Rapid::statement(Cursor& c, int depth) {
     return one(c);
 }
 
-void Rapid::routine(Cursor& c) {
+void Rapid::routine(Cursor& c, bool own) {
     Routine r;
+    r.own = own;
     r.file = file_;
     const int line = c.peek().line;
     note(file_, line, LineKind::understood);
@@ -176,14 +178,16 @@ void Rapid::routine(Cursor& c) {
         while (!c.done() && !c.accept(")")) {
             const bool optional = c.accept("\\");
             std::string last;
+            auto way = Parameter::Way::value;
             while (!c.done() && !c.is(",") && !c.is(")") && !c.is("|") && !c.is("\\")) {
                 if (c.accept("{")) {
                     while (!c.done() && !c.accept("}")) c.take();
                     continue;
                 }
+                if (c.is("inout") || c.is("var") || c.is("pers")) way = Parameter::Way::reference;
                 last = c.take().text;
             }
-            if (!optional && !last.empty()) r.parameters.push_back(last);
+            if (!last.empty()) r.parameters.push_back({way, last, optional, nullptr});
             if (!c.accept(",")) c.accept("|");
         }
     }
@@ -204,9 +208,9 @@ void Rapid::routine(Cursor& c) {
         note(file_, c.peek().line, LineKind::understood);
         c.take();
     }
-    if (r.name.empty() || kind == "func" || kind == "trap" || routines_.count(r.name) > 0) return;
-    routine_order_.push_back(r.name);
-    routines_[r.name] = std::move(r);
+    if (r.name.empty() || kind == "trap") return;
+    if (kind == "proc") routine_order_.push_back(r.name);
+    add_routine(std::move(r));
 }
 
 }  // namespace seamwright::program_path

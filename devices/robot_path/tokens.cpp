@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <limits>
 
@@ -144,7 +145,7 @@ class ExpressionReader {
         const auto closed = [&] { return closing.empty() ? c_.done() : c_.accept(closing); };
         while (!closed()) {
             if (c_.accept(",")) {
-                if (c_.is(",")) all.push_back({});
+                if (c_.is(",") || all.empty()) all.push_back({});  // left out
                 continue;
             }
             Argument a;
@@ -222,6 +223,8 @@ class ExpressionReader {
             case Token::Kind::number: {
                 auto e = made(Expr::Kind::number);
                 e->number = t.number;
+                e->whole = std::isalpha(static_cast<unsigned char>(t.text.front())) != 0 ||  // 'H1F'
+                           t.text.find_first_not_of("0123456789") == std::string::npos;
                 return e;
             }
             case Token::Kind::text:

@@ -63,6 +63,7 @@ struct Expr {
     enum class Kind { number, truth, text, list, record, pose, name, index, component, call, unary, binary };
     Kind kind = Kind::number;
     double number = 0;
+    bool whole = false;           // a number without point or exponent
     std::string text;             // literal, name, component, function or operator
     std::vector<Argument> parts;  // items, indices, arguments, operands
     ExprPtr of;                   // what is indexed or whose component it is

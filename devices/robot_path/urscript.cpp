@@ -62,13 +62,14 @@ class UrScript final : public Machine {
             script.name = "(script)";
             script.body = std::move(top);
             routine_order_.push_back(script.name);
-            routines_[script.name] = std::move(script);
+            add_routine(std::move(script));
         } else {
             for (const Statement& s : top) run_statement(s);
         }
     }
 
   protected:
+    std::string module_name(const Source& /*source*/) const override { return {}; }  // one for all
     bool moves(const std::string& word) const override {
         static const std::set<std::string> words = {
             "movel",  "movej",  "movep", "movec",  "servoj",          "servoc",
@@ -90,9 +91,15 @@ class UrScript final : public Machine {
             return Flow::on;
         }
         const std::string word = c.peek().text;
-        if (word == "return" || word == "break" || word == "continue" || word == "halt") {
+        if (word == "return") {
+            c.take();
+            return give_back(c.done() ? Value{} : value_of(*read_expression(c, Dialect::urscript)));
+        }
+        if (word == "continue") return turn_over();
+        if (word == "break") return leave_loop();
+        if (word == "halt") {
             note(LineKind::understood);
-            return word == "break" ? Flow::leave : word == "continue" ? Flow::on : Flow::back;
+            return Flow::halt;
         }
         if (word == "pass" || word == "end" || word == "popup" || word == "run" || word == "join" ||
             word == "kill") {
@@ -104,11 +111,7 @@ class UrScript final : public Machine {
         if (c.accept("=")) {
             Value value =
                 c.accept("run") ? Value::unknown("run") : value_of(*read_expression(c, Dialect::urscript));
-            const bool fresh = place->kind == Expr::Kind::name && !variable(place->text);
-            if (fresh && word == "local" && !in_doubt())
-                declare(place->text, std::move(value), true);
-            else
-                assign(*place, std::move(value));
+            give(*place, word, std::move(value));
             note(LineKind::understood);
             return Flow::on;
         }
@@ -204,6 +207,19 @@ class UrScript final : public Machine {
                lines_[at_].front().text == word;
     }
 
+    // What stands in the program itself is everybody's; in its functions a name is, unless it is said, a global one
+    // where there is one, else the function's own.
+    void give(const Expr& place, const std::string& word, Value value) {
+        const bool name = place.kind == Expr::Kind::name;
+        if (in_doubt()) value = Value::unknown(shown(place));
+        if (name && in_function() && (word == "local" || (word != "global" && !variable(place.text))))
+            declare(place.text, std::move(value), Reach::routine);
+        else if (name && word == "global")
+            globals_[place.text] = std::move(value);
+        else
+            assign(place, std::move(value));
+    }
+
     static ExprPtr condition(std::span<const Token> tokens) {
         try {
             Cursor c(tokens);
@@ -263,10 +279,10 @@ class UrScript final : public Machine {
                 while (!c.done() && !c.accept(")")) {
                     const Token t = c.take();
                     if (t.kind != Token::Kind::name) continue;
-                    r.parameters.push_back(t.text);
+                    r.parameters.push_back({Parameter::Way::value, t.text, false, nullptr});
                     if (!c.accept("=")) continue;
                     try {
-                        r.defaults[t.text] = read_expression(c, Dialect::urscript);
+                        r.parameters.back().otherwise = read_expression(c, Dialect::urscript);
                     } catch (const Misread&) {
                     }
                 }
@@ -277,9 +293,9 @@ class UrScript final : public Machine {
                 ++at_;
             }
             if (word == "thread") threads_.push_back(r.body);
-            if (word != "def" || r.name.empty() || routines_.count(r.name) > 0) return;
+            if (word != "def" || r.name.empty() || routine(r.name, file_)) return;
             routine_order_.push_back(r.name);
-            routines_[r.name] = std::move(r);
+            add_routine(std::move(r));
             return;
         } else {
             s.tokens = line;

@@ -255,6 +255,27 @@ TEST(MeshFile, HostileFilesEndInASentence) {
         for (const auto& v : odd->vertices) EXPECT_TRUE(v.allFinite());
     }
     EXPECT_FALSE(load_mesh(folder.write("far.obj", "v 0 0 0\nv 100 0 0\nv 0 100 0\nf 1 2 9\n"), ""));
+    const std::string corners = "v 0 0 0\nv 100 0 0\nv 0 100 0\n";
+    EXPECT_FALSE(load_mesh(folder.write("back.obj", corners + "f 1 2 -9\n"), ""));
+    EXPECT_FALSE(load_mesh(folder.write("huge.obj", corners + "f 1 2 99999999999999999999\n"), ""));
+    EXPECT_TRUE(load_mesh(folder.write("parts.obj", corners + "f 1/1/1 2//2 3/7\n"), ""));  // of textures nobody asks
+    const auto ply = [&](const std::string& vertices, const std::string& faces, const std::string& face) {
+        const std::string text =
+            "ply\nformat ascii 1.0\nelement vertex " + vertices +
+            "\nproperty float x\nproperty float y\nproperty float z\nelement face " + faces +
+            "\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n100 0 0\n0 100 0\n" + face + "\n";
+        const auto bytes = std::as_bytes(std::span(text));
+        const auto of_bytes = mesh_from_ply(bytes, "part"),
+                   of_file = load_mesh(folder.write("a.ply", text), "mm");
+        EXPECT_EQ(of_bytes.has_value(), of_file.has_value());
+        return of_file ? std::string() : of_file.error().sentence();
+    };
+    EXPECT_EQ(ply("3", "1", "3 0 1 2"), "");
+    EXPECT_THAT(ply("3", "1", "3 0 1 99999999"), HasSubstr("names a vertex that it does not hold"));
+    EXPECT_THAT(ply("3", "1", "3 0 1 -1"), HasSubstr("names a vertex that it does not hold"));
+    EXPECT_THAT(ply("-3", "1", "3 0 1 2"), HasSubstr("promises -3 elements"));
+    EXPECT_THAT(ply("4000000000", "1", "3 0 1 2"), HasSubstr("promises 4000000000 elements"));
+    EXPECT_NE(ply("3", "90", "3 0 1 2"), "");
 }
 
 }  // namespace

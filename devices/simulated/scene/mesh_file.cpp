@@ -6,8 +6,6 @@
 #include <vtkCommand.h>
 #include <vtkExecutive.h>
 #include <vtkNew.h>
-#include <vtkOBJReader.h>
-#include <vtkPLYReader.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSTLReader.h>
@@ -18,8 +16,13 @@
 #include <cctype>
 #include <cstring>
 
+#include "devices/exchange/files.h"
+#include "devices/simulated/scene/polygon_file.h"
+
 namespace seamwright {
 namespace {
+
+constexpr std::size_t kLongestFile = std::size_t{4} << 30;  // bytes, of text or binary
 
 // Counts the reader's errors; with an observer VTK prints none.
 struct Watch {
@@ -36,16 +39,12 @@ struct Watch {
     }
 };
 
-// `reader` knows where it reads from; `where` is for the Error.
-template <class Reader>
-Expected<TriangleMesh> read_mesh(Reader* reader, const std::string& where) {
+Expected<TriangleMesh> triangulated(vtkPolyData* surface, const std::string& where) {
     Watch watch;
-    watch.on(reader);
     vtkNew<vtkTriangleFilter> triangles;
     watch.on(triangles);
-    watch.on(reader->GetExecutive());
     watch.on(triangles->GetExecutive());
-    triangles->SetInputConnection(reader->GetOutputPort());
+    triangles->SetInputData(surface);
     triangles->PassLinesOff();
     triangles->PassVertsOff();
     triangles->Update();
@@ -65,13 +64,7 @@ Expected<TriangleMesh> read_mesh(Reader* reader, const std::string& where) {
     for (polygons->InitTraversal(); polygons->GetNextCell(cell);) {
         if (cell->GetNumberOfIds() != 3) continue;
         Eigen::Vector3i t;
-        bool known = true;
-        for (int k = 0; k < 3; ++k) {
-            const vtkIdType id = cell->GetId(k);
-            known = known && id >= 0 && id < data->GetNumberOfPoints();
-            t[k] = static_cast<int>(id);
-        }
-        if (!known) return file_error("names a vertex that it does not hold", where);
+        for (int k = 0; k < 3; ++k) t[k] = static_cast<int>(cell->GetId(k));
         const auto& v = mesh.vertices;
         const auto& a = v[static_cast<std::size_t>(t[0])];
         const Eigen::Vector3d n =
@@ -82,11 +75,30 @@ Expected<TriangleMesh> read_mesh(Reader* reader, const std::string& where) {
     return mesh;
 }
 
-template <class Reader>
-Expected<TriangleMesh> read_with(const std::filesystem::path& path) {
-    vtkNew<Reader> reader;
+Expected<TriangleMesh> read_stl(const std::filesystem::path& path) {
+    Watch watch;
+    vtkNew<vtkSTLReader> reader;
+    watch.on(reader);
+    watch.on(reader->GetExecutive());
     reader->SetFileName(path.c_str());
-    return read_mesh(reader.Get(), path.string());
+    reader->Update();
+    if (watch.errors > 0) return file_error("holds no readable triangles", path.string());
+    return triangulated(reader->GetOutput(), path.string());
+}
+
+Expected<TriangleMesh> mesh_of(const PolygonSurface& surface, const std::string& where) {
+    vtkNew<vtkPolyData> data;
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (const Eigen::Vector3d& p : surface.points) points->InsertNextPoint(p.data());
+    vtkNew<vtkCellArray> polygons;
+    for (const auto& face : surface.faces) {
+        polygons->InsertNextCell(static_cast<int>(face.size()));
+        for (const std::int32_t corner : face) polygons->InsertCellPoint(corner);
+    }
+    data->SetPoints(points);
+    data->SetPolys(polygons);
+    return triangulated(data, where);
 }
 
 }  // namespace
@@ -102,9 +114,14 @@ Expected<TriangleMesh> load_mesh(const std::filesystem::path& path, const std::s
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     Expected<TriangleMesh> mesh = file_error("is neither .stl, .ply nor .obj", path.string());
     try {
-        if (extension == ".stl") mesh = read_with<vtkSTLReader>(path);
-        if (extension == ".ply") mesh = read_with<vtkPLYReader>(path);
-        if (extension == ".obj") mesh = read_with<vtkOBJReader>(path);
+        if (extension == ".stl") {
+            mesh = read_stl(path);
+        } else if (extension == ".ply" || extension == ".obj") {
+            SEAM_TRY(const std::string text, read_text_file(path, kLongestFile));
+            SEAM_TRY(const PolygonSurface surface,
+                     extension == ".ply" ? parse_ply(text, path.string()) : parse_obj(text, path.string()));
+            mesh = mesh_of(surface, path.string());
+        }
     } catch (const std::exception& e) {
         return file_error(Text("cannot be read ({})", e.what()), path.string());
     }
@@ -120,11 +137,10 @@ Expected<TriangleMesh> load_mesh(const std::filesystem::path& path, const std::s
 }
 
 Expected<TriangleMesh> mesh_from_ply(std::span<const std::byte> ply, const std::string& where) {
-    vtkNew<vtkPLYReader> reader;
-    reader->SetReadFromInputString(true);
-    reader->SetInputString(std::string(reinterpret_cast<const char*>(ply.data()), ply.size()));
+    const std::string_view text(reinterpret_cast<const char*>(ply.data()), ply.size());
     try {
-        return read_mesh(reader.Get(), where);
+        SEAM_TRY(const PolygonSurface surface, parse_ply(text, where));
+        return mesh_of(surface, where);
     } catch (const std::exception& e) {
         return file_error(Text("cannot be read ({})", e.what()), where);
     }

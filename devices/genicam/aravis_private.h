@@ -28,6 +28,9 @@ class GFailure {
         return &error_;
     }
     explicit operator bool() const { return error_ != nullptr; }
+    bool silent() const {  // nobody answered; further calls wait as long again
+        return g_error_matches(error_, ARV_DEVICE_ERROR, ARV_DEVICE_ERROR_TIMEOUT) != 0;
+    }
     std::string text() const { return error_ ? error_->message : ""; }
 
   private:

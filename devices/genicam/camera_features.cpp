@@ -10,6 +10,7 @@
 
 #include "devices/genicam/gvcp.h"
 #include "devices/genicam/pixel_format.h"
+#include "devices/silence.h"
 
 namespace seamwright {
 namespace {
@@ -300,8 +301,9 @@ Expected<void> apply_settings(ArvCamera* camera, const GenicamSettings& s) {
     return set_trigger(camera, s.trigger);
 }
 
-std::vector<ParameterInfo> read_parameters(ArvCamera* camera) {
-    std::vector<ParameterInfo> list;
+CameraParameters read_parameters(ArvCamera* camera) {
+    CameraParameters read;
+    auto& list = read.list;
     GFailure g;
     double low = 0, high = 0;
     if (arv_camera_is_exposure_time_available(camera, g.out())) {
@@ -310,12 +312,14 @@ std::vector<ParameterInfo> read_parameters(ArvCamera* camera) {
             list.push_back(number("exposure_us", "us", low, high,
                                   arv_camera_get_exposure_time(camera, g.out()), 1, "Exposure time."));
     }
+    if (g.silent()) return {{}, true};
     if (arv_camera_is_gain_available(camera, g.out())) {
         arv_camera_get_gain_bounds(camera, &low, &high, g.out());
         if (!g)
             list.push_back(number("gain_db", "dB", low, high, arv_camera_get_gain(camera, g.out()), 2,
                                   "Gain, as the camera calls it."));
     }
+    if (g.silent()) return {{}, true};
     if (arv_camera_is_frame_rate_available(camera, g.out())) {
         arv_camera_get_frame_rate_bounds(camera, &low, &high, g.out());
         if (!g)
@@ -324,7 +328,7 @@ std::vector<ParameterInfo> read_parameters(ArvCamera* camera) {
                                   "Frames a second when free running."));
     }
     const auto whole = [&](const char* name, const char* feature, const char* help) {
-        if (!has(camera, feature)) return;
+        if (g.silent() || !has(camera, feature)) return;
         gint64 from = 0, to = 0;
         arv_camera_get_integer_bounds(camera, feature, &from, &to, g.out());
         if (g) return;
@@ -337,11 +341,13 @@ std::vector<ParameterInfo> read_parameters(ArvCamera* camera) {
     whole("region_y", "OffsetY", "First row of the image.");
     whole("region_width", "Width", "Columns of the image.");
     whole("region_height", "Height", "Rows of the image.");
+    if (g.silent()) return {{}, true};
     const char* format = arv_camera_get_pixel_format_as_string(camera, g.out());
+    if (g.silent()) return {{}, true};
     list.push_back(choice("pixel_format", readable(offered_formats(camera)), format ? format : "",
                           "How grey values or coordinates are coded."));
     list.push_back(choice("trigger", triggers(camera), present_trigger(camera), "What starts an exposure."));
-    return list;
+    return read;
 }
 
 bool changes_stream(const std::string& name) {
@@ -350,7 +356,8 @@ bool changes_stream(const std::string& name) {
 
 namespace {
 Expected<ParameterInfo> described(ArvCamera* camera, const std::string& name) {
-    const auto infos = read_parameters(camera);
+    const auto [infos, silent] = read_parameters(camera);
+    if (silent) return device_error(ErrorCode::silence, kNoAnswer, "camera");
     std::string known;
     for (const ParameterInfo& info : infos) {
         if (info.name == name) return info;

@@ -21,8 +21,14 @@ std::string address_of(ArvCamera* camera);
 Expected<void> apply_settings(ArvCamera* camera, const GenicamSettings& settings);
 
 // exposure_us, gain_db, frame_rate_hz, region_x, region_y, region_width, region_height, pixel_format (those
-// that can be read), trigger: as far as the camera has them. default_value is the present value.
-std::vector<ParameterInfo> read_parameters(ArvCamera* camera);
+// that can be read), trigger: as far as the camera has them. default_value is the present value. Ends where the camera falls
+// silent, and says so.
+struct CameraParameters {
+    std::vector<ParameterInfo> list;
+    bool silent = false;
+};
+CameraParameters read_parameters(ArvCamera* camera);
+// Error (device): silence.
 Expected<double> get_parameter(ArvCamera* camera, const std::string& name);
 Expected<void> set_parameter(ArvCamera* camera, const std::string& name, double value);
 bool changes_stream(const std::string& parameter);  // needs the acquisition stopped

@@ -191,12 +191,12 @@ SourceCounters GenicamSource::counters() const {
 
 std::vector<ParameterInfo> GenicamSource::parameters() const {
     const std::lock_guard lock(control_);
-    return camera_ ? read_parameters(camera_.get()) : std::vector<ParameterInfo>{};
+    return camera_ && !is_lost() ? read_parameters(camera_.get()).list : std::vector<ParameterInfo>{};
 }
 
 Expected<double> GenicamSource::get(const std::string& parameter) const {
     const std::lock_guard lock(control_);
-    if (!camera_) return tl::unexpected(gone());
+    if (!camera_ || is_lost()) return tl::unexpected(gone());
     return get_parameter(camera_.get(), parameter);
 }
 
@@ -216,7 +216,7 @@ Expected<void> GenicamSource::set(const std::string& parameter, double value) {
         pairing_.forget_clock();
     }
     if (done && parameter == "trigger")
-        for (const ParameterInfo& info : read_parameters(camera_.get()))
+        for (const ParameterInfo& info : read_parameters(camera_.get()).list)
             if (info.name == parameter) trigger_ = info.choices[static_cast<std::size_t>(info.default_value)];
     if (restart) SEAM_OK(start_stream());
     return done;

@@ -34,6 +34,7 @@ namespace {
 
 constexpr int kPageWidth = 440, kPageRoom_px = 120, kPageEdge_px = 12;
 constexpr QSize kFirstSize(1440, 900), kSmallestSize(1180, 660);  // logical pixels
+constexpr QSize kFrame_px(8, 40);   // of the window manager's, which the screen must hold too
 constexpr int kWideRail_px = 1280;  // of the window, in which the steps have words
 // What the live profile keeps of the window's height, whatever stands below it.
 constexpr double kProfileShare = 0.35;
@@ -146,7 +147,7 @@ MainWindow::MainWindow(Studio& studio) : studio_(studio), desk_(studio.desk()) {
 
     const QSize free = screen()->availableSize();
     setMinimumSize(kSmallestSize.boundedTo(free));
-    resize(kFirstSize.boundedTo(free));
+    resize(kFirstSize.boundedTo(free - kFrame_px));
     resizeDocks({docks_[0], docks_[2]}, {430, 430}, Qt::Vertical);
     default_layout_ = saveState(kLayoutVersion);
     QSettings& s = studio_.settings();

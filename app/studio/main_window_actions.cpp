@@ -94,9 +94,10 @@ void MainWindow::make_file_menu() {
         if (may_leave()) studio_.open_demo(false);
     }));
     file->addAction(action("fresh_demo", "home", tr("Start the demo project anew"), {}, [this] {
-        if (QMessageBox::question(this, tr("Demo project"),
-                                  tr("Replace your demo project and its runs by a fresh one?")) ==
-            QMessageBox::Yes)
+        if (may_leave() &&
+            QMessageBox::question(this, tr("Demo project"),
+                                  tr("Replace your demo project and its runs by a fresh one?"),
+                                  QMessageBox::Yes | QMessageBox::No, QMessageBox::No) == QMessageBox::Yes)
             studio_.open_demo(true);
     }));
     file->addSeparator();
@@ -203,15 +204,24 @@ void MainWindow::make_view_menu() {
         restoreState(default_layout_, kLayoutVersion);
     }));
     view->addSeparator();
-    QAction* language = action("language", "language", tr("Deutsch"), QKeySequence("Ctrl+L"), [this] {
-        // The window is built anew, after this signal has returned.
-        QMetaObject::invokeMethod(
-            &studio_, [&s = studio_] { s.set_language(s.language() == "de" ? "en" : "de"); },
-            Qt::QueuedConnection);
-    });
+    // The window is built anew, and with it would go what a running job asks.
+    const auto may_build = [this] {
+        const bool busy = desk_.worker().busy();
+        if (busy) tell(tr("A job is running: end it first, the window is built anew for this."));
+        return !busy;
+    };
+    QAction* language =
+        action("language", "language", tr("Deutsch"), QKeySequence("Ctrl+L"), [this, may_build] {
+            if (!may_build()) return;
+            // After this signal has returned.
+            QMetaObject::invokeMethod(
+                &studio_, [&s = studio_] { s.set_language(s.language() == "de" ? "en" : "de"); },
+                Qt::QueuedConnection);
+        });
     QAction* theme =
         action("theme", "theme", studio_.dark() ? tr("Light theme") : tr("Dark theme"),
-               QKeySequence("Ctrl+T"), [this] {
+               QKeySequence("Ctrl+T"), [this, may_build] {
+                   if (!may_build()) return;
                    QMetaObject::invokeMethod(
                        &studio_, [&s = studio_] { s.set_dark(!s.dark()); }, Qt::QueuedConnection);
                });

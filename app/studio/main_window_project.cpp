@@ -1,5 +1,6 @@
 // The window's project: made, opened, saved, written and read as other files, dropped upon it, left.
 
+#include <QApplication>
 #include <QCloseEvent>
 #include <QFileDialog>
 #include <QFileInfo>
@@ -13,12 +14,15 @@
 #include "devices/exchange/json_fields.h"
 #include "projects/hand_over/hand_over.h"
 #include "projects/reuse/exchange.h"
+#include "widgets/editors/parameter_editor.h"
+#include "widgets/editors/pose_editor.h"
 #include "widgets/print/pdf.h"
 #include "widgets/shown_text.h"
 
 namespace seamwright {
 
 bool MainWindow::may_leave() {
+    if (!take_typed()) return false;
     if (!desk_.modified()) return true;
     QMessageBox box(
         QMessageBox::Question, tr("Unsaved edits"),
@@ -30,7 +34,37 @@ bool MainWindow::may_leave() {
     return answer == QMessageBox::Discard;
 }
 
+// What is typed into a field counts before the project is saved or left. False: it is refused there, and stays.
+bool MainWindow::take_typed() {
+    const QPointer<QWidget> field = QApplication::focusWidget();
+    if (!field || field->window() != this) return true;
+    field->clearFocus();
+    bool refused = false;
+    for (QWidget* up = field; up && !refused; up = up->parentWidget()) {
+        const auto* number = qobject_cast<ParameterEditor*>(up);
+        const auto* pose = qobject_cast<PoseEditor*>(up);
+        refused = (number && number->refused()) || (pose && pose->refused());
+    }
+    if (field) field->setFocus();
+    if (refused) tell(tr("A value is refused: mend it, or press Esc in its field."));
+    return !refused;
+}
+
+// Empty: nothing may be written. The dialog asks about a file of the name that was typed, not about the one with the ending.
+QString MainWindow::project_to_write(const QString& title, const QString& suggestion) {
+    QString file = QFileDialog::getSaveFileName(this, title, suggestion, tr("Seamwright projects (*.seam)"));
+    if (file.isEmpty() || file.endsWith(".seam", Qt::CaseInsensitive)) return file;
+    file += ".seam";
+    const bool replace =
+        !QFileInfo::exists(file) ||
+        QMessageBox::question(this, title,
+                              tr("%1 is there already. Replace it and all that it holds?").arg(file),
+                              QMessageBox::Yes | QMessageBox::No, QMessageBox::No) == QMessageBox::Yes;
+    return replace ? file : QString();
+}
+
 bool MainWindow::save() {
+    if (!take_typed()) return false;
     if (auto saved = desk_.save(); !saved) {
         tell(shown_error(tr("The project was not saved."), saved.error()));
         return false;
@@ -40,9 +74,8 @@ bool MainWindow::save() {
 
 void MainWindow::new_project() {
     if (!may_leave()) return;
-    const QString file = QFileDialog::getSaveFileName(
-        this, tr("New project"), studio_.data_folder() + "/project.seam", tr("Seamwright projects (*.seam)"));
-    if (!file.isEmpty()) studio_.create(file.endsWith(".seam") ? file : file + ".seam");
+    const QString file = project_to_write(tr("New project"), studio_.data_folder() + "/project.seam");
+    if (!file.isEmpty()) studio_.create(file);
 }
 
 void MainWindow::open_project() {
@@ -53,9 +86,8 @@ void MainWindow::open_project() {
 }
 
 void MainWindow::save_as() {
-    const QString file =
-        QFileDialog::getSaveFileName(this, tr("Save as"), QString::fromStdString(desk_.path().string()),
-                                     tr("Seamwright projects (*.seam)"));
+    if (!take_typed()) return;
+    const QString file = project_to_write(tr("Save as"), QString::fromStdString(desk_.path().string()));
     if (file.isEmpty()) return;
     if (auto saved = desk_.save_as(file.toStdString()); !saved)
         tell(shown_error(tr("The project was not saved."), saved.error()));
@@ -79,8 +111,7 @@ void MainWindow::import_project() {
     if (!json) return tell(shown_error(tr("Nothing was imported."), json.error()));
     auto project = seamwright::import_project(*json, from.toStdString());
     if (!project) return tell(shown_error(tr("Nothing was imported."), project.error()));
-    const QString file = QFileDialog::getSaveFileName(this, tr("Save the imported project as"), {},
-                                                      tr("Seamwright projects (*.seam)"));
+    const QString file = project_to_write(tr("Save the imported project as"), {});
     if (file.isEmpty()) return;
     if (auto made = desk_.create(file.toStdString(), *project); !made)
         tell(shown_error(tr("The project was not made."), made.error()));
@@ -113,12 +144,10 @@ void MainWindow::mirror_project() {
     auto mirrored = mirrored_project(desk_.project(), dialog.plane());
     if (!mirrored) return tell(shown_error(mirrored.error()));
     const QFileInfo project(QString::fromStdString(desk_.path().string()));
-    QString file =
-        QFileDialog::getSaveFileName(this, tr("Save the mirrored project as"),
-                                     project.path() + "/" + project.completeBaseName() + "_mirrored.seam",
-                                     tr("Seamwright projects (*.seam)"));
+    const QString file =
+        project_to_write(tr("Save the mirrored project as"),
+                         project.path() + "/" + project.completeBaseName() + "_mirrored.seam");
     if (file.isEmpty()) return;
-    if (!file.endsWith(".seam")) file += ".seam";
     if (file == project.filePath()) return tell(tr("Choose another name: the original stays."));
     mirrored->name = QFileInfo(file).completeBaseName().toStdString();
     if (auto made = desk_.create(file.toStdString(), *mirrored); !made)

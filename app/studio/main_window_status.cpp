@@ -2,6 +2,8 @@
 
 #include <QDateTime>
 #include <QInputDialog>
+#include <QKeyEvent>
+#include <QLineEdit>
 #include <QStatusBar>
 #include <algorithm>
 #include <cmath>
@@ -178,6 +180,16 @@ bool MainWindow::eventFilter(QObject* object, QEvent* event) {
         case QEvent::MouseMove:
         case QEvent::Wheel:
             if (idle_timer_.isActive()) idle_timer_.start();
+            break;
+        case QEvent::ShortcutOverride:
+            // A field with nothing of its own to take back leaves undo and redo to the project.
+            if (const auto* line = qobject_cast<QLineEdit*>(object)) {
+                const auto* key = static_cast<QKeyEvent*>(event);
+                const bool of_project = (key->matches(QKeySequence::Undo) && !line->isUndoAvailable()) ||
+                                        (key->matches(QKeySequence::Redo) && !line->isRedoAvailable());
+                if (of_project) event->ignore();
+                return of_project;
+            }
             break;
         default:
             break;

@@ -12,6 +12,7 @@
 #include <array>
 
 #include "widgets/editors/parameter_editor.h"
+#include "widgets/into_view.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
 
@@ -60,7 +61,8 @@ struct PoseEditor::Impl {
 
     void show();
     bool take(PoseEditor& editor, const QString& text);
-    QString typed() const;
+    bool take_typed(PoseEditor& editor);
+    bool refuse(PoseEditor& editor, const QString& why);
 };
 
 void PoseEditor::Impl::show() {
@@ -91,28 +93,35 @@ void PoseEditor::Impl::show() {
     problem->hide();
 }
 
-QString PoseEditor::Impl::typed() const {
-    if (notation == PoseNotation::matrix) return matrix->toPlainText();
+bool PoseEditor::Impl::take_typed(PoseEditor& editor) {
+    if (notation == PoseNotation::matrix) return take(editor, matrix->toPlainText());
     QStringList words;
-    for (std::size_t i = 0; i < fields_of(notation).size(); ++i) {
+    const auto fields = fields_of(notation);
+    for (std::size_t i = 0; i < fields.size(); ++i) {
         const auto number = number_from_text(lines[i]->text());
-        words << (number ? QString::number(*number, 'g', 17) : QStringLiteral("?"));
+        if (!number)
+            return refuse(editor,
+                          PoseEditor::tr("%1: \"%2\" is not a number").arg(fields[i].name, lines[i]->text()));
+        words << QString::number(*number, 'g', 17);
     }
-    return words.join(' ');
+    return take(editor, words.join(' '));
+}
+
+bool PoseEditor::Impl::refuse(PoseEditor& editor, const QString& why) {
+    reason = why;
+    problem->setText(PoseEditor::tr("refused: %1").arg(reason));
+    QPalette red = problem->palette();
+    red.setColor(QPalette::WindowText, style::alarm(editor.palette()));
+    problem->setPalette(red);
+    problem->show();
+    bring_into_view(problem);
+    return false;
 }
 
 // False: refused; the fields stay as typed.
 bool PoseEditor::Impl::take(PoseEditor& editor, const QString& text) {
     const auto taken = pose_from_text(text, notation);
-    if (!taken) {
-        reason = shown_error(taken.error());
-        problem->setText(PoseEditor::tr("refused: %1").arg(reason));
-        QPalette red = problem->palette();
-        red.setColor(QPalette::WindowText, style::alarm(editor.palette()));
-        problem->setPalette(red);
-        problem->show();
-        return false;
-    }
+    if (!taken) return refuse(editor, shown_error(taken.error()));
     const bool changed = distance_mm(*taken, pose) > 1e-9 || angle_rad(*taken, pose) > 1e-12;
     pose = *taken;
     show();
@@ -205,12 +214,12 @@ bool PoseEditor::eventFilter(QObject* watched, QEvent* event) {
         const QWidget* next = QApplication::focusWidget();
         const bool half_typed =
             impl_->notation == PoseNotation::abb_quaternion && next && next != this && isAncestorOf(next);
-        if (impl_->modified && !half_typed) impl_->take(*this, impl_->typed());
+        if (impl_->modified && !half_typed) impl_->take_typed(*this);
     } else if (event->type() == QEvent::KeyPress) {
         auto* key = static_cast<QKeyEvent*>(event);
         const bool enter = key->key() == Qt::Key_Return || key->key() == Qt::Key_Enter;
         if (enter && (!in_matrix || (key->modifiers() & Qt::ControlModifier))) {
-            impl_->take(*this, impl_->typed());
+            if (impl_->modified) impl_->take_typed(*this);
             return true;
         }
         if (key->key() == Qt::Key_Escape && (impl_->modified || refused())) {

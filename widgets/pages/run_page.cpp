@@ -13,6 +13,7 @@
 #include "devices/exchange/tables/csv_table.h"
 #include "projects/measure/measure.h"
 #include "projects/proof/zero_shift.h"
+#include "widgets/into_view.h"
 #include "widgets/pages/parts/type_chooser.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
@@ -271,7 +272,10 @@ void RunPage::show_run(std::shared_ptr<const RunRecord> run) {
                 const double sigma = k < 3 ? region.correction->sigma_xyz_mm[static_cast<int>(k)]
                                            : region.correction->sigma_abc_deg[static_cast<int>(k) - 3];
                 const int decimals = k < 3 ? 2 : 3;
-                (k < 3 ? moves : turns) << tr("%1 ± %2").arg(number(v[k], decimals), number(sigma, decimals));
+                // Of what is not determined there is no number.
+                (k < 3 ? moves : turns) << (std::isfinite(sigma) ? tr("%1 ± %2").arg(number(v[k], decimals),
+                                                                                     number(sigma, decimals))
+                                                                 : QStringLiteral("-"));
             }
             const RegionCorrection& c = *region.correction;
             row << head(region.gate_passed ? tr("passed the gate")
@@ -347,6 +351,7 @@ void RunPage::ask(const std::shared_ptr<const RunRecord>& judged) {
     push_->setText(tr("Push %1 frames to %2").arg(judged->regions.size()).arg(names.join(", ")));
     push_->setAccessibleName(push_->text());
     confirm_->show();
+    bring_into_view(confirm_);
     decline_->setFocus();
 }
 

@@ -2,6 +2,7 @@
 
 #include <QCheckBox>
 #include <QLabel>
+#include <QLineEdit>
 #include <QListWidget>
 #include <QSpinBox>
 
@@ -9,10 +10,12 @@
 #include "devices/simulated/cell.h"
 #include "devices/simulated/scene/mesh_file.h"
 #include "projects/file/project_file.h"
+#include "projects/reuse/exchange.h"
 #include "projects/reuse/part_type_edits.h"
 #include "projects/station/acquire.h"
 #include "tests/app/studio/furniture.h"
 #include "tests/app/studio/person.h"
+#include "widgets/editors/parameter_editor.h"
 
 namespace seamwright {
 namespace {
@@ -30,6 +33,45 @@ TEST_F(Furniture, ASpotIsToldToStandStillAtTheTrigger) {
     me.shortcut(Qt::Key_Z);
     EXPECT_FALSE(studio->desk().project().spots.at(0).stop_at_trigger);
     EXPECT_FALSE(box->isChecked());
+}
+
+// A number that is typed counts when the project is saved, one that is refused holds the saving up, and a field with nothing of
+// its own to take back leaves undo to the project.
+TEST_F(Furniture, WhatIsTypedIsSaved) {
+    DeskPerson me(window());
+    me.step(3);
+    Desk& desk = studio->desk();
+    const auto seen = [](const ParameterEditor* e) {
+        return e->isVisible() && e->isEnabled() && e->findChild<QLineEdit*>() &&
+               e->value() + 1 <= e->info().maximum;
+    };
+    const auto editors = window().findChildren<ParameterEditor*>();
+    const auto at = std::find_if(editors.begin(), editors.end(), seen);
+    ASSERT_NE(at, editors.end());
+    ParameterEditor& editor = **at;
+    auto* line = editor.findChild<QLineEdit*>();
+    me.look_at(line);
+    const double before = editor.value();
+    const auto type = [&](const QString& text) {
+        line->setFocus();
+        line->selectAll();
+        QTest::keyClicks(line, text);
+    };
+    type(QString::number(before + 1));
+    EXPECT_EQ(editor.value(), before) << "not taken yet";
+    me.shortcut(Qt::Key_S);
+    EXPECT_EQ(editor.value(), before + 1);
+    EXPECT_FALSE(desk.modified());
+    const auto file = ProjectFile::open(desk.path(), FileAccess::read_only);
+    ASSERT_TRUE(file) << file.error().sentence();
+    EXPECT_EQ(export_project(file->load().value()), export_project(desk.project()));
+    line->setFocus();
+    QTest::keyClick(line, Qt::Key_Z, Qt::ControlModifier);
+    EXPECT_EQ(editor.value(), before) << "undone from within the field";
+    type("x");
+    me.shortcut(Qt::Key_S);
+    EXPECT_TRUE(editor.refused());
+    EXPECT_TRUE(desk.modified()) << "nothing is saved while a value is refused";
 }
 
 TEST_F(Furniture, ASpotFromTheDrawingIsConfirmedOnThePart) {

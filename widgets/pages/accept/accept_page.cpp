@@ -3,10 +3,10 @@
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QHeaderView>
-#include <QScrollArea>
 
 #include "devices/exchange/files.h"
 #include "projects/measure/fields.h"
+#include "widgets/into_view.h"
 #include "widgets/print/pdf.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
@@ -79,9 +79,7 @@ void AcceptPage::make_fixed_head() {
         const Agenda* agenda = acceptance_.agenda();
         if (!agenda) return;
         if (desk_.project().requirements.acceptance.tolerance_mm == 0) {
-            for (QWidget* up = parentWidget(); up; up = up->parentWidget())
-                if (auto* area = qobject_cast<QScrollArea*>(up))
-                    area->ensureWidgetVisible(requirements_.front());
+            bring_into_view(requirements_.front());
             return requirements_.front()->setFocus();
         }
         if (!agenda->next) return write_report();

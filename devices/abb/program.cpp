@@ -42,6 +42,8 @@ std::string folded(std::string name) {  // RAPID does not tell capital letters a
     return name;
 }
 
+constexpr std::string_view kPathName = "seamwright_path";  // no module's of ours; a path's where nobody says another
+
 // The module's names begin with sw or with s and the spot's number; what RAPID defines by number.
 bool is_taken_name(const std::string& name) {
     const std::string text = folded(name);
@@ -50,7 +52,8 @@ bool is_taken_name(const std::string& name) {
     const bool spot =
         text[0] == 's' && text.size() > 3 && std::isdigit(static_cast<unsigned char>(text[1])) != 0;
     return is_robot_word(RobotLanguage::rapid, name) || numbered || spot || text.starts_with("sw") ||
-           text.starts_with("err_") || text.starts_with("op_") || text.starts_with("seamwright");
+           text.starts_with("err_") || text.starts_with("op_") ||
+           (text.starts_with("seamwright") && text != kPathName);
 }
 
 Expected<void> check_name(const std::string& name, const char* what, const Text& where) {

@@ -69,7 +69,8 @@ json read_part(const BatchJob& job, const BatchOptions& options, int task) {
     if (!fs::exists(path, error)) return nullptr;
     const auto text = read_text_file(path);
     auto part = text ? parse_json(*text, path.string()) : tl::unexpected(text.error());
-    if (part && part->is_object() && part->value("part", -1) == task && part->value("of", -1) == job.tasks)
+    if (part && part->is_object() && part->value("part", json()) == task &&
+        part->value("of", json()) == job.tasks)
         return std::move(*part);
     fs::remove(path, error);
     return nullptr;

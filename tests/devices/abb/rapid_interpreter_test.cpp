@@ -306,6 +306,10 @@ TEST(RapidDelivered, NoNameOfTheUserBreaksAProgram) {
     }
     EXPECT_GE(written, 6);
     PathProgramRequest path;
+    path.frame_from_tool = {Pose::Identity()};
+    const auto unnamed = write_abb_path(path);
+    ASSERT_TRUE(unnamed) << unnamed.error().sentence();
+    EXPECT_TRUE(check_rapid(*unnamed));
     path.name = "bead";
     for (int count = 1; count <= 3; ++count) {
         path.frame_from_tool.assign(static_cast<std::size_t>(count), Pose::Identity());

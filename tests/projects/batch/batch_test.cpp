@@ -88,7 +88,7 @@ TEST_F(Batch, ADamagedPartIsAsNone) {
     outcome();
     for (int k = 0; k < 4; k += 2) EXPECT_EQ(task(k), 0);
     std::ofstream(options.folder / "part-0.json") << "{\"part\": 0, \"of\": 4, \"val";
-    std::ofstream(options.folder / "part-1.json") << "{\"part\": 2, \"of\": 4}";
+    std::ofstream(options.folder / "part-1.json") << "{\"part\": \"one\", \"of\": []}";
     std::ofstream(options.folder / "part-3.json") << "[]";
     EXPECT_THAT(outcome().waiting, ElementsAre(0, 1, 3));
     EXPECT_FALSE(fs::exists(options.folder / "part-0.json")) << "so that its task makes it again";

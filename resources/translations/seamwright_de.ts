@@ -781,6 +781,10 @@
         <translation>Feld des Sensors, x bis</translation>
     </message>
     <message>
+        <source>Every line is listed</source>
+        <translation>Jede Zeile ist enthalten</translation>
+    </message>
+    <message>
         <source>the only one</source>
         <translation>das einzige</translation>
     </message>
@@ -3988,6 +3992,18 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
 <context>
     <name>seamwright::MainWindow</name>
     <message>
+        <source>A job is running: end it first, the window is built anew for this.</source>
+        <translation>Es läuft ein Auftrag: erst beenden, das Fenster wird dafür neu aufgebaut.</translation>
+    </message>
+    <message>
+        <source>%1 is there already. Replace it and all that it holds?</source>
+        <translation>%1 gibt es schon. Mit allem, was darin ist, ersetzen?</translation>
+    </message>
+    <message>
+        <source>A value is refused: mend it, or press Esc in its field.</source>
+        <translation>Ein Wert wurde abgelehnt: berichtigen, oder in seinem Feld Esc drücken.</translation>
+    </message>
+    <message>
         <source>Record what the devices deliver...</source>
         <translation>Aufzeichnen, was die Geräte liefern...</translation>
     </message>
@@ -4566,6 +4582,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
 </context>
 <context>
     <name>seamwright::PoseEditor</name>
+    <message>
+        <source>%1: &quot;%2&quot; is not a number</source>
+        <translation>%1: „%2“ ist keine Zahl</translation>
+    </message>
     <message>
         <source>mm</source>
         <translation>mm</translation>

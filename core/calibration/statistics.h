@@ -14,6 +14,11 @@ double chi_squared_quantile(double p, double freedom);
 // freedom).
 double student_quantile(double p, double freedom);
 
+// A sigma that was stated is believed as long as the residuals under it are no worse than chance makes them once in a
+// thousand; `chi_squared` of `freedom` degrees. Beyond, they contradict it: what they scatter counts, and the verdict says
+// so. Every method that is given a sigma judges it by this.
+bool contradicts_stated(double chi_squared, double freedom);
+
 // Limit of the F statistic (three numbers of the one left out, `freedom` of the rest) beyond which the most
 // suspicious of many observations counts as wrong: the 99.9 % point, raised for having picked the largest.
 inline double outlier_limit(double freedom) {

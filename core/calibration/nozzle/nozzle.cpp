@@ -24,8 +24,7 @@ constexpr double kMostPlaceVariance_mm2 = 1e6;
 constexpr double kCovarianceSlack_mm2 = 1e-9;                         // besides kCovarianceSlack
 constexpr double kSmallestSphere_mm = 0.1, kLargestSphere_mm = 1000;  // radius
 constexpr double kSmallestSigma_mm = 1e-4, kLargestSigma_mm = 10;     // of a touch
-// Of chi squared: the programmed tip is another one, and the touches contradict their sigma.
-constexpr double kDeviationTold = 0.99, kContradictionTold = 0.999;
+constexpr double kDeviationTold = 0.99;  // of chi squared: the programmed tip is another one
 
 Expected<void> check_target(const NozzleTarget& target, const NozzleOptions& options) {
     if (!target.place_mm.allFinite() || target.place_mm.cwiseAbs().maxCoeff() > kFarthest_mm)
@@ -199,8 +198,7 @@ Text names_of(const std::vector<std::size_t>& list, const std::vector<NozzleTouc
 void judge(const std::vector<NozzleTouch>& touches, const WrongTouches& found, NozzleResult& result) {
     const TouchFit& fit = found.fit;
     const double three = 3 * result.worst_sigma_mm;
-    const bool contradict = !fit.estimated && fit.freedom > 0 &&
-                            fit.misfit > chi_squared_quantile(kContradictionTold, std::max(1.0, fit.freedom));
+    const bool contradict = !fit.estimated && contradicts_stated(fit.misfit, fit.freedom);
     const Text figures("three sigma of the tip {:.3f} mm, the touches scatter by {:.3f} mm", three,
                        result.rms_mm);
     const Text next = next_touch(found.set, fit);

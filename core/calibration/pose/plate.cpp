@@ -245,7 +245,8 @@ double worst_sigma_mm(const Points& plate, const Pose& pose, const Matrix6& cova
     return worst;
 }
 
-Judgement judged(const PlateResult& result, double worst_mm, double size, double spread, double count) {
+Judgement judged(const PlateResult& result, double given_sigma_mm, double worst_mm, double size,
+                 double spread, double count) {
     const double stretch = std::abs(result.scale - 1) * size;
     const double stretch_sigma =
         std::max(result.sigma_mm, kNoiseFloor_mm) * size / std::sqrt(std::max(kLeastSpread_mm2, spread));
@@ -258,6 +259,12 @@ Judgement judged(const PlateResult& result, double worst_mm, double size, double
         return {Verdict::poor,
                 Text("distances in the world are {:.5f} times those on the plate", result.scale),
                 "check the plate's drawing, the scale of the measuring system and the order of the points"};
+    } else if (result.contradicted) {
+        return {
+            Verdict::poor,
+            Text("the points scatter by {:.3f} mm, more than their sigma of {:.3g} mm allows",
+                 result.sigma_mm, given_sigma_mm),
+            "check the points and the plate's drawing, or state the sigma that the measuring system keeps"};
     } else if (3 * worst_mm > kUsablePlate_mm || result.rms_mm > kUsablePlate_mm) {
         return {Verdict::poor, fit, "check the order of the points and measure again, with more points"};
     } else if (3 * worst_mm > kGoodPlate_mm || count < 4) {
@@ -318,8 +325,11 @@ Expected<PlateResult> calibrate_plate(const std::vector<PlatePoint>& points, con
     result.status = PlateStatus::ok;
     result.world_from_plate = fit.pose;
     result.rms_mm = std::sqrt(fit.squares / count);
-    result.sigma_mm = options.sigma_mm.value_or(std::sqrt(fit.squares / redundancy));
-    const double student = options.sigma_mm ? 1 : student_quantile(kUpper95, redundancy) / kNormal95;
+    result.contradicted =
+        options.sigma_mm && contradicts_stated(fit.squares / std::pow(*options.sigma_mm, 2), redundancy);
+    const bool stated = options.sigma_mm && !result.contradicted;
+    result.sigma_mm = stated ? *options.sigma_mm : std::sqrt(fit.squares / redundancy);
+    const double student = stated ? 1 : student_quantile(kUpper95, redundancy) / kNormal95;
     const Matrix6 unit = inverse_matrix(information_of(pairs.plate, fit.pose, pairs.use));
     result.covariance = unit * (result.sigma_mm * result.sigma_mm * student * student);
     const PairMoments m = moments_of(pairs.world, pairs.plate, pairs.use);
@@ -335,7 +345,8 @@ Expected<PlateResult> calibrate_plate(const std::vector<PlatePoint>& points, con
     // With a floor: three points fit anything.
     const Matrix6 honest = unit * std::pow(std::max(result.sigma_mm * student, kNoiseFloor_mm), 2);
     report.judgement =
-        judged(result, worst_sigma_mm(pairs.plate, fit.pose, honest), pairs.size, m.spread_from, count);
+        judged(result, options.sigma_mm.value_or(0), worst_sigma_mm(pairs.plate, fit.pose, honest),
+               pairs.size, m.spread_from, count);
     return result;
 }
 

@@ -8,7 +8,8 @@
 // world_from_plate.
 //
 // Noise model: isotropic, equal, independent errors of the world points, standard deviation estimated from
-// the residuals (3 n - 6 degrees of freedom) unless given. Covariance sigma^2 (J^T J)^-1 with Student's
+// the residuals (3 n - 6 degrees of freedom) unless given; a given one that they contradict counts no more
+// (contradicts_stated()), and the verdict is poor. Covariance sigma^2 (J^T J)^-1 with Student's
 // factor when estimated. Degenerate: fewer than three points, coinciding points (Error); points on one line
 // (status undetermined, the turn about it is free). With four points or more, one wrong point is found by
 // leaving each out, named and left out.
@@ -45,10 +46,11 @@ struct PlateResult {
     PlateStatus status = PlateStatus::undetermined;
     Pose world_from_plate = Pose::Identity();
     Matrix6 covariance = Matrix6::Zero();
-    double rms_mm = 0;      // |world - world_from_plate * plate| over the points used
-    double sigma_mm = 0;    // of a point an axis: estimated, or the given one
-    double scale = 1;       // of world over plate distances; off 1 means units or a wrong plate
-    bool mirrored = false;  // the points fit a mirrored plate better: an axis of one set is flipped
+    double rms_mm = 0;    // |world - world_from_plate * plate| over the points used
+    double sigma_mm = 0;  // of a point an axis: estimated, or the given one where the residuals let it stand
+    bool contradicted = false;  // the points scatter more than the given sigma allows
+    double scale = 1;           // of world over plate distances; off 1 means units or a wrong plate
+    bool mirrored = false;      // the points fit a mirrored plate better: an axis of one set is flipped
     std::vector<Text> notices;
     CalibrationReport report;  // parameters x y z [mm] rx ry rz [deg]; poses = points
 };

@@ -12,6 +12,7 @@
 #include "core/calibration/pose_set.h"
 #include "core/calibration/sphere/sphere_scale.h"
 #include "core/calibration/sphere/tcp_sphere_advice.h"
+#include "core/calibration/sphere/tcp_sphere_judge.h"
 #include "core/calibration/sphere/tcp_sphere_settle.h"
 #include "core/calibration/sphere/tcp_sphere_solve.h"
 #include "core/calibration/sphere/tcp_sphere_start.h"
@@ -27,9 +28,8 @@ using namespace tcp_sphere;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNoiseFloor_mm =
     0.02;  // no sensor on a robot is better; keeps noise-free data from looking sure
-constexpr double kUndeterminedSigma_mm = 2.0;             // a direction weaker than this is not determined
-constexpr double kGoodTcp_mm = 0.1, kUsableTcp_mm = 0.5;  // three sigma at the working distance
-constexpr double kPoorFit_mm = 0.5;
+constexpr double kUndeterminedSigma_mm = 2.0;  // a direction weaker than this is not determined
+constexpr double kStatedTold = 0.99;  // of chi squared: the poses err by more than is stated of the robot
 constexpr double kLooksLikeMetres_mm = 0.5;  // extent of all profiles in x, and a radius, below
 constexpr double kLooksAtRadius_mm = 0.1;    // a fit worse than this may be one to a wrong radius
 // Another radius is told where it leaves this share of the disagreement and differs by so much.
@@ -300,10 +300,7 @@ bool has_rival(const std::vector<Section>& sections, const std::vector<Start>& s
 
 // The poses disagree by more than the robot's stated repeatability explains (99 %).
 bool beyond_stated(const NoiseLevels& noise, double stated_variance) {
-    constexpr double kUpper99 = 2.326;
-    // Chi-square over its degrees, Wilson and Hilferty.
-    const double nu = std::max(1.0, noise.redundancy), c = 2 / (9 * nu);
-    const double limit = std::pow(1 - c + kUpper99 * std::sqrt(c), 3);
+    const double limit = chi_squared_quantile(kStatedTold, noise.freedom) / noise.freedom;
     return noise.poses_disagree && noise.centre_variance > limit * stated_variance;
 }
 
@@ -317,7 +314,7 @@ Matrix10 covariance_of(const std::vector<Section>& sections, const Model& model,
                covariance_of_centres(sections, model, inverse, stated_variance);
     if (!noise.poses_disagree)
         return inverse * system.meat * inverse * (system.count / std::max(1.0, system.count - unknowns));
-    const double student = student_quantile(kUpper95, noise.redundancy) / kNormal95;
+    const double student = student_quantile(kUpper95, noise.freedom) / kNormal95;
     return student * student *
            (inverse * noise.point_variance +
             covariance_of_centres(sections, model, inverse, noise.centre_variance));
@@ -332,65 +329,6 @@ double better_radius(const std::vector<Section>& sections, const Model& model, d
                    std::abs(free_model.radius - model.radius) > kOtherRadius_mm
                ? free_model.radius
                : kNaN;
-}
-
-struct SphereFit {
-    double used = 0;  // poses
-    bool few_agree = false;
-    double better_radius = kNaN, radius = 0;
-};
-
-Judgement judge_sphere(const SphereFit& fit, TcpSphereResult& result) {
-    const double three_sigma = 3 * result.working_sigma_mm;
-    const double hold_out = result.report.hold_out.rms_mm;
-    // With less than six poses left a wrong one among them still fits; leaving it out shows it.
-    constexpr double kFewPosesHoldOut_mm = 0.3;
-    const double hold_out_limit = fit.used < kTcpSphereFewestPoses ? kFewPosesHoldOut_mm : 2 * kPoorFit_mm;
-    const bool bad_fit = result.rms_mm > kPoorFit_mm || hold_out > hold_out_limit;
-    result.fits = !std::isfinite(fit.better_radius) && !fit.few_agree && !bad_fit;
-    if (std::isfinite(fit.better_radius))
-        return {Verdict::poor,
-                Text("the profiles fit a radius of {:.3f} mm much better than the given {:.3f} mm",
-                     fit.better_radius, fit.radius),
-                "check the radius (was the diameter given?)"};
-    if (fit.few_agree)
-        return {Verdict::poor, "most profiles contradict the solution found from the others",
-                "check the robot poses and that the sphere did not move"};
-    if (bad_fit)
-        return {Verdict::poor,
-                Text("the profiles do not fit one sphere: rms {:.2f} mm, {:.2f} mm on poses not used",
-                     result.rms_mm, hold_out),
-                "check radius, robot poses, tool frame of the robot and that the sphere did not move"};
-    const Text more = result.proposals.empty()
-                          ? Text("take more poses")
-                          : Text("take more poses, first: {}", result.proposals.front().words);
-    if (three_sigma > kUsableTcp_mm)
-        return {Verdict::poor, Text("three sigma at the working distance are {:.2f} mm", three_sigma), more};
-    if (three_sigma > kGoodTcp_mm)
-        return {Verdict::usable,
-                Text("three sigma at the working distance are {:.2f} mm, good is {:.1f}", three_sigma,
-                     kGoodTcp_mm),
-                more};
-    if (fit.used < kTcpSphereFewestPoses)
-        return {Verdict::usable, Text("only {:.0f} of the poses could be used", fit.used),
-                "take more poses that show the sphere"};
-    return {Verdict::good, Text("three sigma at the working distance are {:.3f} mm", three_sigma), ""};
-}
-
-// What the poses leave open, or cannot decide between.
-Judgement undetermined_sphere(const TcpSphereResult& result, bool weak) {
-    if (!weak)
-        return {Verdict::undetermined,
-                "two different sensor positions explain these profiles about equally well",
-                "take more poses in other orientations and with the sphere elsewhere in the view"};
-    Judgement judgement{Verdict::undetermined,
-                        result.degenerate.empty()
-                            ? Text("the poses leave a direction open to {:.3g} mm", result.weakest_sigma_mm)
-                            : result.degenerate.front(),
-                        {}};
-    if (!result.proposals.empty())
-        judgement.cure = Text("take more poses, first: {}", result.proposals.front().words);
-    return judgement;
 }
 
 }  // namespace
@@ -499,13 +437,19 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     result.mirrored = judge_axes(sections, observations, options, model, result.notices);
     if (const std::string rejected = left_out(result.report.poses); !rejected.empty())
         result.notices.push_back(Text("not used: {}", rejected));
-    if (noise.poses_disagree && (stated == 0 || beyond_stated(noise, stated)))
+    if (noise.poses_disagree && (stated == 0 || beyond_stated(noise, stated))) {
+        result.sigma_freedom = noise.freedom;
         result.notices.push_back(
-            Text("the poses disagree by {:.1f} times the sensor's own noise: the robot's poses are "
-                 "less exact than the "
-                 "profiles, and the stated sigma counts that in",
-                 std::sqrt(noise.ratio)));
-    SphereFit fit{used, used < 0.5 * static_cast<double>(candidates), kNaN, model.radius};
+            stated == 0
+                ? Text("the poses disagree by {:.1f} times the sensor's own noise: the robot's poses are "
+                       "less exact than the "
+                       "profiles, and the stated sigma counts that in",
+                       std::sqrt(noise.ratio))
+                : Text("the poses err by {:.3f} mm, more than the {:.3f} mm that are stated of the robot: "
+                       "the stated sigma counts that in",
+                       std::sqrt(noise.centre_variance), std::sqrt(stated)));
+    }
+    SphereFit fit{used, used<0.5 * static_cast<double>(candidates), stated> 0, kNaN, model.radius};
     if (!radius_free && noise.poses_disagree && result.rms_mm > kLooksAtRadius_mm)
         fit.better_radius = better_radius(sections, model, mean_disagreement);
     result.report.judgement = judge_sphere(fit, result);

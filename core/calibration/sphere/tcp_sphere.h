@@ -19,7 +19,9 @@
 // Noise model: independent radial noise of the points, its size estimated, which may vary over the arc
 // (heteroscedastic sandwich covariance). When the profiles disagree with one another by more than their own
 // noise explains (robot errors; F test at 99 %), an isotropic error of each s_i of the size that explains it
-// is propagated too, times Student's factor, so that value +- 1.96 sigma keeps holding 95 %. Where the robot's
+// is propagated too, times Student's factor of the numbers that tell its size (two of a profile count rather than three,
+// TcpSphereResult::sigma_freedom), so that value +- 1.96 sigma keeps holding 95 %. Where these are few the verdict goes by
+// the upper end of what the sigma can be, and no pose is left out that those left could not convict. Where the robot's
 // repeatability is stated, such an error of that size is always propagated, whether the profiles are many enough to show it
 // or not, and what they show counts only where it is beyond chance against the stated.
 //
@@ -34,6 +36,7 @@
 // give status undetermined, named in words, with the next pose to take.
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -100,7 +103,9 @@ struct TcpSphereResult {
     bool fits = false;
     Matrix6 covariance = Matrix6::Zero();  // of flange_from_sensor, tangent of pose.h
     Eigen::Matrix3d centre_covariance = Eigen::Matrix3d::Zero();
-    double radius_sigma_mm = 0;                                  // 0 when the radius was given
+    double radius_sigma_mm = 0;  // 0 when the radius was given
+    // Of the numbers that the covariance rests on where it is told by the poses' scatter; infinite: it is not.
+    double sigma_freedom = std::numeric_limits<double>::infinity();
     Eigen::Vector3d working_point_mm = Eigen::Vector3d::Zero();  // mean of s_i: the working distance
     double working_sigma_mm = 0;  // largest sigma of the working point in the flange frame
     // Of the sensor's own millimetres, as the cuts show them; zero: they do not, or the radius was not given.

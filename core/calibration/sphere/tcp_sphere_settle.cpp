@@ -39,9 +39,13 @@ size_t used_count(const std::vector<Section>& sections) {
 
 namespace {
 
+bool spares_one(const std::vector<Section>& sections, bool radius_free) {
+    return used_count(sections) > static_cast<size_t>(fewest_agreeing(radius_free));
+}
+
 // Profiles that contradict the sphere which the others agree on (they show something else, or their pose is
 // wrong) stop being used, the worst first. Returns whether the set has changed.
-bool leave_out_contradictions(std::vector<Section>& sections, const Model& model) {
+bool leave_out_contradictions(std::vector<Section>& sections, const Model& model, bool radius_free) {
     std::vector<double> rms;
     for (const auto& section : sections)
         if (section.used) rms.push_back(section_rms(section, model));
@@ -56,7 +60,7 @@ bool leave_out_contradictions(std::vector<Section>& sections, const Model& model
             worst = &section;
         }
     }
-    if (worst == nullptr || used_count(sections) <= static_cast<size_t>(kFewestSections)) return false;
+    if (worst == nullptr || !spares_one(sections, radius_free)) return false;
     worst->used = false;
     return true;
 }
@@ -68,7 +72,7 @@ bool leave_out_wrong_pose(std::vector<Section>& sections, const Model& model, bo
     const size_t used = used_count(sections);
     const double unknowns = radius_free ? 10 : 9;
     const double redundancy = 3.0 * static_cast<double>(used - 1) - unknowns;
-    if (redundancy < 3) return false;
+    if (!spares_one(sections, radius_free)) return false;
     double all = 0, own = 0, points = 0;
     for (const auto& section : sections) {
         if (!section.used) continue;
@@ -130,14 +134,14 @@ void settle(std::vector<Section>& sections, Model& model, bool radius_free, cons
     const auto drop = [&] {
         for (size_t round = 0; round < sections.size(); ++round) {
             solve_reduced(sections, model, radius_free, std::numeric_limits<double>::infinity(), 40);
-            if (!leave_out_contradictions(sections, model) &&
+            if (!leave_out_contradictions(sections, model, radius_free) &&
                 !leave_out_wrong_pose(sections, model, radius_free))
                 break;
         }
     };
     // The robust start has already decided who agrees: begin from its residuals, or one gross profile would
     // bend the least squares before it can be seen.
-    while (leave_out_contradictions(sections, model)) {
+    while (leave_out_contradictions(sections, model, radius_free)) {
     }
     drop();
     bool changed = false;

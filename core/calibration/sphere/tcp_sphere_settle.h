@@ -11,6 +11,12 @@ namespace seamwright::tcp_sphere {
 
 // Three numbers a profile against nine unknowns, and one to check with.
 inline constexpr int kFewestSections = 4;
+// So many must stay when one is left out as contradicting the others. Where the robot's poses err, two numbers of a
+// profile count (its cut's radius says little): of fewer, the rest fits one sphere whichever was left out.
+constexpr int fewest_agreeing(bool radius_free) {
+    constexpr int kChecks = 5, kNumbers = 2;
+    return ((radius_free ? 10 : 9) + kChecks + kNumbers - 1) / kNumbers;
+}
 
 // Sum of the squared distances of the points from the sphere, mm^2.
 double point_squares(const Section& section, const Model& model);

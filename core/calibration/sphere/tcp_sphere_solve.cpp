@@ -284,6 +284,10 @@ NoiseLevels noise_levels(const std::vector<Section>& sections, const Model& mode
                          const Matrix10& inverse_information, bool radius_free) {
     NoiseLevels noise;
     double own = 0, own_freedom = 0, between = 0, used = 0, shown = 0;
+    // Of M = S - P^T A P, S block by block the squares, P the pulls side by side: the disagreement is d^T M d of the
+    // centres' errors d, with mean tr M and variance 2 tr M^2 of a unit error.
+    double of_squares = 0;
+    Matrix10 of_both = Matrix10::Zero(), of_pulls = Matrix10::Zero();
     for (const auto& section : sections) {
         if (!section.used) continue;
         own += section.own_squares;
@@ -293,10 +297,18 @@ NoiseLevels noise_levels(const std::vector<Section>& sections, const Model& mode
         // What a centre error shows, less what the common parameters take up of it.
         const CentreError error = centre_error(section, model);
         shown += error.squares.trace() - (inverse_information * error.pull).cwiseProduct(error.pull).sum();
+        of_squares += error.squares.squaredNorm();
+        of_both.noalias() += error.pull * error.squares * error.pull.transpose();
+        of_pulls.noalias() += error.pull * error.pull.transpose();
     }
     noise.point_variance = own / std::max(1.0, own_freedom);
     noise.redundancy = 3 * used - (radius_free ? 10 : 9);
     if (noise.redundancy < 1) return noise;
+    const Matrix10 pulled = inverse_information * of_pulls;
+    const double spread =
+        of_squares - 2 * inverse_information.cwiseProduct(of_both).sum() + (pulled * pulled).trace();
+    noise.freedom = spread > 0 && shown > 0 ? std::clamp(shown * shown / spread, 1.0, noise.redundancy)
+                                            : noise.redundancy;
     if (noise.point_variance > 0) noise.ratio = between / noise.redundancy / noise.point_variance;
     noise.poses_disagree =
         noise.ratio > chi_squared_quantile(kDisagreementTold, noise.redundancy) / noise.redundancy &&

@@ -63,10 +63,11 @@ double disagreement(const Section& section, const Model& model);
 // Two stages of the noise: of the points within a profile, and of the profiles' centres against the common
 // sphere, as an isotropic error of s_i (that is what an error of the robot's pose is).
 struct NoiseLevels {
-    double point_variance = 0;    // mm^2, in-plane radial
-    double centre_variance = 0;   // mm^2 an axis; 0 when the points' noise explains the disagreement
-    double redundancy = 0;        // 3 profiles - unknowns
-    double ratio = 1;             // disagreement between the profiles over what the points' noise explains
+    double point_variance = 0;   // mm^2, in-plane radial
+    double centre_variance = 0;  // mm^2 an axis; 0 when the points' noise explains the disagreement
+    double redundancy = 0;       // 3 profiles - unknowns
+    double freedom = 0;  // of centre_variance: how many numbers of equal weight tell as much (Satterthwaite)
+    double ratio = 1;    // disagreement between the profiles over what the points' noise explains
     bool poses_disagree = false;  // ratio beyond the 99 % point of its F distribution
 };
 NoiseLevels noise_levels(const std::vector<Section>& sections, const Model& model,

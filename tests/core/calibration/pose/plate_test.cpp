@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+
 #include "tests/core/calibration/sphere/sphere_simulation.h"
 
 namespace seamwright {
@@ -154,6 +156,35 @@ TEST(Plate, RefusesBadInput) {
     bad = good;
     bad[1].id = "M1";
     expect_error(bad, "twice");
+}
+
+// Stated ten times too small, or nothing at all: the residuals say otherwise, and what is told of the plate holds the truth.
+TEST(Plate, AStatedSigmaThatThePointsContradictIsNotBelieved) {
+    for (const double stated : {0.005, 1e-9}) {
+        int inside = 0;
+        for (unsigned seed = 0; seed < 40; ++seed) {
+            Random random(seed + 800);
+            const Pose truth = make_pose(any_rotation(random), {900, -100, 300});
+            PlateOptions options;
+            options.sigma_mm = stated;
+            const auto result = calibrate_plate(plate_points(truth, 8, 0.05, random), options);
+            ASSERT_TRUE(result.has_value());
+            EXPECT_FALSE(serves(result->report.judgement.verdict)) << result->report.judgement.reason;
+            EXPECT_THAT(result->report.judgement.reason, HasSubstr("more than their sigma"));
+            const Vector6 d = difference(result->world_from_plate, truth);
+            inside += d.dot(result->covariance.ldlt().solve(d)) < 12.592 ? 1 : 0;
+        }
+        EXPECT_GE(inside, 33) << stated;
+    }
+    int contradicted = 0;
+    for (unsigned seed = 0; seed < 200; ++seed) {
+        Random random(seed + 2000);
+        PlateOptions options;
+        options.sigma_mm = 0.05;
+        const auto result = calibrate_plate(plate_points(Pose::Identity(), 8, 0.05, random), options);
+        contradicted += result && result->contradicted ? 1 : 0;
+    }
+    EXPECT_LE(contradicted, 2);
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/features/contour/contour_pitch.h"
 #include "core/features/contour/contour_noise.h"
+#include "core/features/contour/contour_pitch.h"
 #include "core/features/feature.h"
 
 namespace seamwright {

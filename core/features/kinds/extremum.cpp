@@ -2,7 +2,9 @@
 //
 // A parabola is fitted to the points within fit_length_mm around the extreme one (h over t: z over x for
 // highest and lowest, x over z for leftmost and rightmost), the window is centred on its vertex and the fit
-// repeated, so that the noise that made one point the extreme one does not choose the window. Vertex t = -b /
+// repeated, so that the noise that made one point the extreme one does not choose the window. Unless it is given, that length
+// grows from 2 mm as long as the contour is a parabola within its noise on both sides: until a quartic through the same points
+// takes more than chance from the sum of squares, then it is the one before. Vertex t = -b /
 // (2 a), h = c - b^2 / (4 a); the covariance is that of (a, b, c) carried through these, noise from the
 // residuals, widened where neighbours are alike (contour_noise.h). The contour need not be a parabola (an arc between flanks, a ridge that noise hides): by how much a
 // quartic through the same points has its vertex elsewhere, beyond what noise makes of the difference, is added.
@@ -32,6 +34,13 @@ constexpr double kRidgeNoise = 1.4;  // times the contour's noise, and
 constexpr double kRidgeSag = 0.045;  // of the parabola's own sag: a misfit beyond both is an edge
 constexpr double kLeastSide = 0.15;  // of the fitted length that must be seen on either side
 
+constexpr double kShortestFit_mm = 2,
+                 kLongerFit = 1.25;  // where the length is not given: the first, and by how much each grows
+constexpr double kNoParabola = 6;    // chi^2 of the quartic's two unknowns: the shape has left the parabola
+constexpr double kNoParabolaFlat = 12;  // the same while no bow is seen
+constexpr double kParabolaKept = 0.95;  // of the points, within the gate: fewer, and it is none
+constexpr double kBothSides = 0.45;     // of the fitted length, that a longer one must see on either side
+
 constexpr double kApexLeastGate_mm = 1e-9;
 constexpr double kApexLeastVariance = 1e-300;  // of a bow: divided by
 constexpr double kApexUnknown_mm2 = 1e12;      // variance where the contour is flat
@@ -50,15 +59,15 @@ std::vector<ParameterInfo> extremum_parameters() {
          0,
          "The extremum that is meant.",
          {"highest", "lowest", "leftmost", "rightmost"}},
-        {"fit_length_mm", "mm", 0.01, 1000, 2, 2,
-         "Length of contour around the extremum that the parabola takes."},
+        {"fit_length_mm", "mm", 0, 1000, 0, 2,
+         "Length of contour around the extremum that the parabola takes; 0: as far as it is a parabola."},
     });
 }
 
 class Extremum final : public FeatureFinder {
   public:
     Extremum(FeatureWindow window, Which which, double fit_length_mm)
-        : window_(window), which_(which), fit_length_(fit_length_mm) {}
+        : window_(window), which_(which), given_(fit_length_mm) {}
 
     Feature find(const Profile& profile) const override {
         points_.gather(profile, window_);
@@ -74,7 +83,9 @@ class Extremum final : public FeatureFinder {
         if (!top.piece)
             return refused(FeatureStatus::no_points,
                            Text("no unbroken piece of {} points in the window", kFewestForApex));
-        const Parabola fit = parabola_at(t, h, sign, top);
+        fit_length_ = given_ > 0 ? given_ : kShortestFit_mm;
+        Parabola fit = parabola_at(t, h, sign, top);
+        if (!(given_ > 0)) fit = longest(t, h, sign, top, fit);
         Feature feature;
         feature.points_used = fit.used;
         if (fit.used < kFewestForApex) {
@@ -87,8 +98,7 @@ class Extremum final : public FeatureFinder {
         const double a = fit.coefficient[0], b = fit.coefficient[1], c = fit.coefficient[2];
         const Eigen::Matrix3d covariance = fit.sigma2 * fit.normal.ldlt().solve(Eigen::Matrix3d::Identity());
         const double vertex = fit.bent ? -b / (2 * a) : 0;
-        const double bow = std::abs(a) / std::sqrt(std::max(covariance(0, 0), kApexLeastVariance));
-        if (bow < kLeastBow) {
+        if (bow_of(fit) < kLeastBow) {
             feature.status = FeatureStatus::ill_conditioned;
             feature.message = "the contour is flat there: no bow is seen above the noise";
             feature.point_mm =
@@ -97,7 +107,9 @@ class Extremum final : public FeatureFinder {
             return feature;
         }
         // A ridge is no summit: the parabola's misfit stands out against both the noise and its own bow.
-        const double noise = contour_noise_mm(points_.x, points_.z, scratch_);
+        // Of neighbours that share their noise it is more than these tell.
+        const double noise =
+            std::max(contour_noise_mm(points_.x, points_.z, scratch_), points_.noise().alone_mm);
         const double sag = std::abs(a) * 0.25;
         const bool ridge = feature.rms_mm > std::max(kRidgeNoise * noise, kRidgeSag * sag);
         const bool seen_on_both_sides = fit.low <= -kLeastSide && fit.high >= kLeastSide;
@@ -140,8 +152,8 @@ class Extremum final : public FeatureFinder {
         Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
         double sigma2 = 0, centre = 0, origin = 0;
         double low = 0, high = 0;  // u that was seen
-        int used = 0;
-        bool bent = false;  // outwards
+        int used = 0, there = 0;   // within the gate, and all
+        bool bent = false;         // outwards
     };
 
     static Feature refused(FeatureStatus status, Text message) {
@@ -178,12 +190,13 @@ class Extremum final : public FeatureFinder {
             fit.normal.setZero();
             Eigen::Vector3d right = Eigen::Vector3d::Zero();
             double hh = 0;
-            fit.used = 0;
+            fit.used = fit.there = 0;
             fit.low = fit.high = 0;
             for (int i = piece.first; i < piece.first + piece.count; ++i) {
                 const double u = (t[i] - fit.centre) / fit_length_, v = sign * (h[i] - fit.origin);
                 if (std::abs(u) > 0.5 || std::abs(h[i] - fit.origin) > fit_length_) continue;
                 const Eigen::Vector3d row(u * u, u, 1);
+                ++fit.there;
                 if (pass > 0 && std::abs(row.dot(fit.coefficient) - v) > gate) continue;
                 fit.normal += row * row.transpose();
                 right += v * row;
@@ -205,6 +218,7 @@ class Extremum final : public FeatureFinder {
         Eigen::Vector2d off2 =
             Eigen::Vector2d::Zero();  // squares, without noise, of its vertex off the other's, in t and h
         double alike = 1;             // contour_noise.h, of its residuals
+        double more = 0;              // chi^2 that its two further unknowns take
     };
     Shape other_shape(const std::vector<double>& t, const std::vector<double>& h, double sign,
                       const FeaturePoints::Piece& piece, const Parabola& fit, double vertex) const {
@@ -213,14 +227,16 @@ class Extremum final : public FeatureFinder {
         const double gate = kApexGate * std::sqrt(fit.sigma2) + kApexLeastGate_mm;
         Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
         Vector5 right = Vector5::Zero();
-        double hh = 0;
+        double hh = 0, parabola = 0;
         rows_.clear();
         scratch_.clear();
         int used = 0;
         for (int i = piece.first; i < piece.first + piece.count; ++i) {
             const double u = (t[i] - fit.centre) / fit_length_, v = sign * (h[i] - fit.origin);
             if (std::abs(u) > 0.5 || std::abs(h[i] - fit.origin) > fit_length_) continue;
-            if (std::abs(Eigen::Vector3d(u * u, u, 1).dot(fit.coefficient) - v) > gate) continue;
+            const double off = Eigen::Vector3d(u * u, u, 1).dot(fit.coefficient) - v;
+            if (std::abs(off) > gate) continue;
+            parabola += off * off;
             const double w = u - vertex;
             const Vector5 row(
                 Vector5::Map(std::array<double, 5>{1, w, w * w, w * w * w, w * w * w * w}.data()));
@@ -238,7 +254,8 @@ class Extremum final : public FeatureFinder {
         Shape shape;
         for (std::size_t i = 0; i < rows_.size(); ++i) scratch_[i] -= rows_[i].dot(c);
         shape.alike = alike_widening(scratch_, 5, points_.noise());
-        const double sigma2 = shape.alike * std::max(0.0, hh - right.dot(c)) / (used - 5);
+        const double quartic = std::max(0.0, hh - right.dot(c)), sigma2 = shape.alike * quartic / (used - 5);
+        shape.more = (parabola - quartic) / std::max(sigma2, kApexLeastGate_mm * kApexLeastGate_mm);
         const Eigen::Matrix2d full = solver.solve(Eigen::Matrix<double, 5, 2>::Identity()).topRows<2>();
         const Eigen::Matrix3d few = normal.topLeftCorner<3, 3>().ldlt().solve(Eigen::Matrix3d::Identity());
         const double bow = 2 * fit.coefficient[0];  // of both: the quartic's own says little at its middle
@@ -251,6 +268,38 @@ class Extremum final : public FeatureFinder {
         shape.off2 = {fit_length_ * fit_length_ * std::max(0.0, shift * shift - shift_noise),
                       std::max(0.0, rise * rise - rise_noise)};
         return shape;
+    }
+
+    static double bow_of(const Parabola& fit) {
+        const Eigen::Matrix3d inverse = fit.normal.ldlt().solve(Eigen::Matrix3d::Identity());
+        return std::abs(fit.coefficient[0]) /
+               std::sqrt(std::max(fit.sigma2 * inverse(0, 0), kApexLeastVariance));
+    }
+
+    // Sets fit_length_ as well.
+    Parabola longest(const std::vector<double>& t, const std::vector<double>& h, double sign, const Top& top,
+                     const Parabola& shortest) const {
+        const auto is_parabola = [&](const Parabola& fit) {
+            const double vertex = fit.bent ? -fit.coefficient[1] / (2 * fit.coefficient[0]) : 0;
+            const double most = bow_of(fit) < kLeastBow ? kNoParabolaFlat : kNoParabola;
+            return fit.used >= kParabolaKept * fit.there &&
+                   other_shape(t, h, sign, *top.piece, fit, std::clamp(vertex, -0.5, 0.5)).more < most;
+        };
+        Parabola best = shortest;
+        double length = fit_length_;
+        if (shortest.used >= kFewestForApex && !is_parabola(shortest)) return shortest;
+        const auto [low, high] = std::minmax_element(t.begin() + top.piece->first,
+                                                     t.begin() + top.piece->first + top.piece->count);
+        while (length < *high - *low) {
+            fit_length_ = length * kLongerFit;
+            const Parabola fit = parabola_at(t, h, sign, top);
+            const bool seen = fit.low <= -kBothSides && fit.high >= kBothSides;
+            if (fit.used >= kFewestForApex && (!seen || !is_parabola(fit))) break;
+            length = fit_length_;
+            best = fit;
+        }
+        fit_length_ = length;
+        return best;
     }
 
     // Round by round about the vertex that the last one found.
@@ -276,7 +325,8 @@ class Extremum final : public FeatureFinder {
 
     FeatureWindow window_;
     Which which_;
-    double fit_length_;
+    double given_;  // 0: none
+    mutable double fit_length_ = kShortestFit_mm;
     mutable FeaturePoints points_;
     mutable std::vector<double> scratch_;
     mutable std::vector<Vector5> rows_;

@@ -182,13 +182,12 @@ bool MainWindow::eventFilter(QObject* object, QEvent* event) {
             if (idle_timer_.isActive()) idle_timer_.start();
             break;
         case QEvent::ShortcutOverride:
-            // A field with nothing of its own to take back leaves undo and redo to the project.
-            if (const auto* line = qobject_cast<QLineEdit*>(object)) {
+            // A field in which nothing is being typed leaves undo and redo to the project.
+            if (const auto* line = qobject_cast<QLineEdit*>(object); line && !line->isModified()) {
                 const auto* key = static_cast<QKeyEvent*>(event);
-                const bool of_project = (key->matches(QKeySequence::Undo) && !line->isUndoAvailable()) ||
-                                        (key->matches(QKeySequence::Redo) && !line->isRedoAvailable());
-                if (of_project) event->ignore();
-                return of_project;
+                if (!key->matches(QKeySequence::Undo) && !key->matches(QKeySequence::Redo)) break;
+                event->ignore();
+                return true;
             }
             break;
         default:

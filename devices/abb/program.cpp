@@ -42,7 +42,8 @@ std::string folded(std::string name) {  // RAPID does not tell capital letters a
     return name;
 }
 
-constexpr std::string_view kPathName = "seamwright_path";  // no module's of ours; a path's where nobody says another
+constexpr std::string_view kPathName =
+    "seamwright_path";  // no module's of ours; a path's where nobody says another
 
 // The module's names begin with sw or with s and the spot's number; what RAPID defines by number.
 bool is_taken_name(const std::string& name) {

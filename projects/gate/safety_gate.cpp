@@ -63,18 +63,21 @@ Pose displacement_to(const GateRequest& request, const Region& region, const Pos
 }
 
 // How far the spots move by a displacement, and how far the limits let them: as a shift and a turn about some point of the part.
-// The work object's origin may lie metres away, where a turn that throws the part aside shifts nothing.
+// The work object's origin may lie metres away, where a turn that throws the part aside shifts nothing. Of the measured spots: where
+// another one lies may not be known.
 double spots_move_mm(const GateRequest& request, const Pose& d) {
     double most = 0;
     for (const GateSpot& spot : request.spots)
-        most = std::max(most, (d * spot.point_workobject_mm - spot.point_workobject_mm).norm());
+        if (spot.measured)
+            most = std::max(most, (d * spot.point_workobject_mm - spot.point_workobject_mm).norm());
     return most;
 }
 double spots_may_move_mm(const GateRequest& request, const Region& region) {
     double spread = 0;
     for (const GateSpot& a : request.spots)
         for (const GateSpot& b : request.spots)
-            spread = std::max(spread, (a.point_workobject_mm - b.point_workobject_mm).norm());
+            if (a.measured && b.measured)
+                spread = std::max(spread, (a.point_workobject_mm - b.point_workobject_mm).norm());
     return region.limits.translation_mm + rad_from_deg(region.limits.rotation_deg) * spread;
 }
 

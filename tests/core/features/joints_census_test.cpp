@@ -249,6 +249,43 @@ TEST(Joints, SharedNoiseIsNoShape) {
     }
 }
 
+// A joggle less deep than the taught one lies between the places of its two flats: found, it is as unsure as that. The right shape
+// is no less sure for it.
+TEST(Joints, AnotherShapeIsAsUnsureAsItIsOther) {
+    const auto joggle = [](double depth) {
+        return Joint{"joggle", {{{-kFar, 0}, {0, 0}, {2, -depth}, {kFar, -depth}}}, -8, 10};
+    };
+    for (const double noise : {0.03, 0.06})
+        for (const double depth : {2.0, 1.8, 1.5}) {
+            int ok = 0, covered = 0;
+            double sigma = 0;
+            for (int i = 0; i < 40; ++i) {
+                Dice dice(seed_of(500 + std::uint64_t(i)));
+                SensorModel sensor;
+                sensor.points = 640, sensor.pitch = 0.09, sensor.noise = noise, sensor.grid = Grid::exact;
+                MatchScene t = match_scene(joggle(2), sensor, 0, 0.5, dice, false);
+                t.reference = {-2, 0};
+                t.scene = seen(moved(joggle(depth).sheets, t.truth), sensor, dice);
+                const Registration r = matched(t);
+                if (r.status != RegistrationStatus::ok) continue;
+                const Vector2d there = r.scene_from_template * t.reference, e = there - t.truth * t.reference;
+                const Vector2d arm =
+                    there - Vector2d(r.scene_from_template.dx_mm, r.scene_from_template.dz_mm);
+                Eigen::Matrix<double, 2, 3> j;
+                j << 1, 0, -arm.y(), 0, 1, arm.x();
+                const Eigen::Matrix2d c = j * r.covariance * j.transpose();
+                ++ok;
+                covered += e.dot(c.ldlt().solve(e)) < 5.991;
+                sigma += std::min(std::sqrt(c(1, 1)), 1.0);
+            }
+            EXPECT_GE(ok, depth > 1.9 ? 39 : 20) << noise << " " << depth;
+            EXPECT_GE(covered, 0.85 * ok) << noise << " " << depth;
+            if (depth > 1.9) {
+                EXPECT_LT(sigma / ok, 0.2 * noise + 0.003);
+            }
+        }
+}
+
 // A gap's slopes determine nothing, so that the census above has nothing to measure a place by: an answer that lies a
 // millimetre off is wrong nonetheless.
 TEST(Joints, AGapBeyondTheWindowIsNotFoundInIt) {

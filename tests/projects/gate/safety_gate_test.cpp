@@ -165,6 +165,15 @@ std::vector<Refusal> refusals() {
                  make_pose(rotation_exp({0, 0, rad_from_deg(2)}), Eigen::Vector3d::Zero());
          },
          "the spots move by 2"},
+        {"TurnAboutAFarOriginBesideASpotThatWasNeverTaught",
+         [](R r) {
+             for (auto& spot : r.spots) spot.point_workobject_mm.x() += 6000;
+             r.spots[2].measured = r.spots[2].required = false;
+             r.spots[2].point_workobject_mm.setZero();
+             r.correction.displacement.workobject_from_movedworkobject =
+                 make_pose(rotation_exp({0, 0, rad_from_deg(2)}), Eigen::Vector3d::Zero());
+         },
+         "the spots move by 2"},
         {"TurnAboutAFarOriginOnTheController",
          [](R r) {
              for (auto& spot : r.spots) spot.point_workobject_mm.x() += 6000;

@@ -124,6 +124,36 @@ Eigen::Vector3d in_taught_sensor(const Eigen::Vector2d& point_mm, const Pose& fl
     return base_from_sensor.inverse() * (*base_from_flange_reported * flange_from_sensor * m);
 }
 
+// Does what a spot's sensor sends hold every line of its field? The stripe in an image has a place for each; a sensor that lists one
+// line without return lists all of them. A file may have dropped those without return: its profile is then shorter than what was
+// taught.
+struct ListedLines {
+    bool images = false;     // what an image's stripe tells
+    std::size_t taught = 0;  // lines of a profile that lists all of them; 0: none is known to
+
+    static ListedLines of(const Project& project, const Spot& spot) {
+        constexpr std::ptrdiff_t kFewestEmpty = 3;
+        ListedLines lines;
+        const Calibration* calibration = calibration_of(project, spot);
+        if (calibration && calibration->method == "pixels")
+            return lines;  // a look at images, nothing that is corrected by
+        lines.images = calibration && calibration->model;
+        for (const Spot& other : project.spots) {
+            const auto& z = other.reference_profile.z_mm;
+            if (other.sensor_id == spot.sensor_id &&
+                std::count_if(z.begin(), z.end(), [](double v) { return !std::isfinite(v); }) >= kFewestEmpty)
+                lines.taught = std::max(lines.taught, z.size());
+        }
+        return lines;
+    }
+    bool any() const { return images || taught > 0; }
+    bool all_in(const Capture& capture) const {
+        constexpr double kAll = 0.9;  // of the lines: what lies without return is more
+        const std::size_t n = capture.profile.size();
+        return n == 0 ? images : taught > 0 && double(n) >= kAll * double(taught);
+    }
+};
+
 struct SpotMeasurer::Impl {
     Spot spot;
     PeakOptions peak_options;
@@ -132,7 +162,9 @@ struct SpotMeasurer::Impl {
     Pose flange_from_sensor = Pose::Identity();
     bool calibrated = false;
     std::unique_ptr<FeatureFinder> finder;
-    std::optional<TaughtStripe> taught;  // where the reference profile is a contour
+    ListedLines lines;
+    std::unique_ptr<FeatureFinder> finder_of_all_lines;  // of contour ends, where a sensor may list them all
+    std::optional<TaughtStripe> taught;                  // where the reference profile is a contour
 
     StripePeaks peaks;
     Capture capture;
@@ -174,7 +206,8 @@ struct SpotMeasurer::Impl {
         } else if (auto tracked = track_capture(from, filter, profile); !tracked) {
             return no(SpotStatus::no_stripe, tracked.error().text());
         }
-        measurement.feature = finder->find(profile);
+        const bool all = finder_of_all_lines && lines.all_in(from);
+        measurement.feature = (all ? finder_of_all_lines : finder)->find(profile);
         const Feature& feature = measurement.feature;
         if (feature.status != FeatureStatus::ok)
             return no(SpotStatus::no_feature,
@@ -194,20 +227,6 @@ struct SpotMeasurer::Impl {
     }
 };
 
-// The stripe in an image has a place for every line; a sensor that lists one line without return lists all of them.
-static bool lists_every_line(const Project& project, const Spot& spot) {
-    constexpr std::ptrdiff_t kFewest = 3;
-    const Calibration* calibration = calibration_of(project, spot);
-    if (calibration && calibration->method == "pixels")
-        return false;  // a look at images, nothing that is corrected by
-    if (calibration && calibration->model) return true;
-    return std::any_of(project.spots.begin(), project.spots.end(), [&](const Spot& other) {
-        const auto& z = other.reference_profile.z_mm;
-        return other.sensor_id == spot.sensor_id &&
-               std::count_if(z.begin(), z.end(), [](double v) { return !std::isfinite(v); }) >= kFewest;
-    });
-}
-
 SpotMeasurer::SpotMeasurer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 SpotMeasurer::SpotMeasurer(SpotMeasurer&&) noexcept = default;
 SpotMeasurer& SpotMeasurer::operator=(SpotMeasurer&&) noexcept = default;
@@ -221,19 +240,24 @@ Expected<SpotMeasurer> SpotMeasurer::make(const Project& project, const std::str
     if (!sensor)
         return input_error(Text("its sensor \"{}\" is not in the project", spot->sensor_id), where,
                            "choose one of the project's sensors");
-    FeatureRecipe recipe = spot->feature;
-    if (recipe.kind == "contour-end" && lists_every_line(project, *spot)) recipe.parameters["every_line"] = 1;
-    auto finder = make_feature_finder(recipe);
-    if (!finder) {
-        Error error = finder.error();
-        error.within(where);
-        return tl::unexpected(error);
-    }
     auto impl = std::make_unique<Impl>();
+    const auto finder_of = [&](const FeatureRecipe& recipe) {
+        return make_feature_finder(recipe).map_error([&](Error error) {
+            error.within(where);
+            return error;
+        });
+    };
+    SEAM_TRY(auto finder, finder_of(spot->feature));
+    impl->lines = ListedLines::of(project, *spot);
+    if (spot->feature.kind == "contour-end" && impl->lines.any()) {
+        FeatureRecipe recipe = spot->feature;
+        recipe.parameters["every_line"] = 1;
+        SEAM_TRY(impl->finder_of_all_lines, finder_of(recipe));
+    }
     impl->spot = *spot;
     impl->peak_options = sensor->peaks;
     impl->filter = sensor->filter;
-    impl->finder = std::move(*finder);
+    impl->finder = std::move(finder);
     if (auto taught =
             TaughtStripe::make(spot->reference_profile, {spot->reference_mm.x(), spot->reference_mm.z()},
                                search_window(spot->feature)))

@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/features/contour/contour_noise.h"
 #include "core/features/feature_points.h"
@@ -36,7 +37,8 @@ constexpr double kLeastSide = 0.15;  // of the fitted length that must be seen o
 
 constexpr double kShortestFit_mm = 2,
                  kLongerFit = 1.25;  // where the length is not given: the first, and by how much each grows
-constexpr double kNoParabola = 6;    // chi^2 of the quartic's two unknowns: the shape has left the parabola
+constexpr double kClearBow = 15;     // standard deviations: less length would do
+constexpr double kNoParabola = 4;    // chi^2 of the quartic's two unknowns: the shape has left the parabola
 constexpr double kNoParabolaFlat = 12;  // the same while no bow is seen
 constexpr double kParabolaKept = 0.95;  // of the points, within the gate: fewer, and it is none
 constexpr double kBothSides = 0.45;     // of the fitted length, that a longer one must see on either side
@@ -285,8 +287,8 @@ class Extremum final : public FeatureFinder {
             return fit.used >= kParabolaKept * fit.there &&
                    other_shape(t, h, sign, *top.piece, fit, std::clamp(vertex, -0.5, 0.5)).more < most;
         };
-        Parabola best = shortest;
-        double length = fit_length_;
+        Parabola best = shortest, before = shortest;
+        double length = fit_length_, length_before = length;
         if (shortest.used >= kFewestForApex && !is_parabola(shortest)) return shortest;
         const auto [low, high] = std::minmax_element(t.begin() + top.piece->first,
                                                      t.begin() + top.piece->first + top.piece->count);
@@ -295,11 +297,12 @@ class Extremum final : public FeatureFinder {
             const Parabola fit = parabola_at(t, h, sign, top);
             const bool seen = fit.low <= -kBothSides && fit.high >= kBothSides;
             if (fit.used >= kFewestForApex && (!seen || !is_parabola(fit))) break;
-            length = fit_length_;
-            best = fit;
+            before = std::exchange(best, fit);
+            length_before = std::exchange(length, fit_length_);
         }
-        fit_length_ = length;
-        return best;
+        const bool clear = before.used >= kFewestForApex && before.bent && bow_of(before) > kClearBow;
+        fit_length_ = clear ? length_before : length;
+        return clear ? before : best;
     }
 
     // Round by round about the vertex that the last one found.

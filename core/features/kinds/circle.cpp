@@ -6,7 +6,8 @@
 // radius whose points span minimum_arc_deg compete, since a straight fits any large circle. Then the sum of
 // squared distances from the rim is minimised (Gauss-Newton; the algebraic fit is biased to small radii on
 // short arcs) over the points within 3.5 robust sigma, until the set stands still. With a known radius only
-// the centre is fitted.
+// the centre is fitted. Then once more together with the straights that run tangentially into the arc, if any do (arc_fit.h): their
+// first points lie within the noise of the rim, and taken for a part of it they make it flatter.
 //
 // Covariance: sigma^2 (J^T J)^-1 of the centre, sigma from the residuals and the profile's noise, widened where neighbours
 // are alike (contour_noise.h). On a short arc the centre is hardly determined along the arc's bisector (with a free radius
@@ -24,6 +25,7 @@
 
 #include "core/features/contour/contour_noise.h"
 #include "core/features/feature_points.h"
+#include "core/features/kinds/arc_fit.h"
 #include "core/features/kinds/feature_kinds.h"
 #include "core/geometry/pose.h"
 #include "core/numbers.h"
@@ -51,12 +53,6 @@ std::vector<ParameterInfo> circle_parameters() {
     });
 }
 
-struct Circle {
-    Eigen::Vector2d centre = Eigen::Vector2d::Zero();
-    double radius = 0;
-    double distance(double x, double z) const { return std::hypot(x - centre.x(), z - centre.y()) - radius; }
-};
-
 class CircleFinder final : public FeatureFinder {
   public:
     CircleFinder(FeatureWindow window, double known, double smallest, double largest, double arc)
@@ -71,13 +67,16 @@ class CircleFinder final : public FeatureFinder {
             feature.message = Text("{} points in the window, a circle needs {}", n, kFewestOnArc);
             return feature;
         }
-        Circle circle;
+        Circle begun;
         double arc = 0;
-        if (!start(circle, arc)) {
+        if (!start(begun, arc)) {
             feature.message = "no round piece of contour in the window";
             return feature;
         }
-        return refine(feature, circle);
+        const ProfileNoise noise = points_.noise();
+        Circle circle = begun;
+        const Feature alone = refine(feature, circle, noise);
+        return with_straights(alone, begun, circle, noise);
     }
 
   private:
@@ -106,10 +105,11 @@ class CircleFinder final : public FeatureFinder {
 
     // The longest row of points within `tolerance` of the rim, in contour order; a few misses in between are
     // dirt or missing returns. Returns its number of points and the angle that it spans.
-    int longest_run(const Circle& circle, double tolerance, double& arc) const {
+    int longest_run(const Circle& circle, double tolerance, double& arc, int* from = nullptr,
+                    int* to = nullptr) const {
         constexpr int kMisses = 6;
         const int n = static_cast<int>(points_.x.size());
-        int best = 0, count = 0, misses = 0;
+        int best = 0, count = 0, misses = 0, begin = 0;
         double turned = 0, best_turned = 0, last = 0;
         for (int i = 0; i < n; ++i) {
             const double dx = points_.x[i] - circle.centre.x(), dz = points_.z[i] - circle.centre.y();
@@ -122,6 +122,7 @@ class CircleFinder final : public FeatureFinder {
             const double angle = std::atan2(dz, dx);
             if (count == 0) {
                 turned = 0;
+                begin = i;
             } else {
                 turned += std::abs(std::remainder(angle - last, 2 * kPi));
             }
@@ -131,6 +132,7 @@ class CircleFinder final : public FeatureFinder {
             if (count > best) {
                 best = count;
                 best_turned = turned;
+                if (from) *from = begin, *to = i;
             }
         }
         arc = std::min(best_turned, 2 * kPi);
@@ -159,8 +161,8 @@ class CircleFinder final : public FeatureFinder {
             }
         };
         // Of the contour, from the first to the last of the three points.
-        static constexpr double kShares[] = {1, 0.6, 0.35, 0.2, 0.1, 0.05};
-        constexpr double kMostPlaces = 48;
+        static constexpr double kShares[] = {1, 0.6, 0.35, 0.2, 0.1, 0.05, 0.025};
+        constexpr double kMostPlaces = 96;
         Circle c;
         for (const double share : kShares) {
             const int span = std::max(kFewestOnArc - 1, static_cast<int>(share * (n - 1)));
@@ -208,7 +210,7 @@ class CircleFinder final : public FeatureFinder {
         }
     }
 
-    Feature refine(Feature feature, Circle circle) const {
+    Feature refine(Feature feature, Circle& circle, const ProfileNoise& noise) const {
         const int n = static_cast<int>(points_.x.size());
         const int unknowns = known_ > 0 ? 2 : 3;
         keep_.assign(static_cast<std::size_t>(n), 0);
@@ -273,25 +275,29 @@ class CircleFinder final : public FeatureFinder {
         scratch_.clear();
         for (int i = 0; i < n; ++i)
             if (keep_[i]) scratch_.push_back(circle.distance(points_.x[i], points_.z[i]));
-        const ProfileNoise noise = points_.noise();
         const int freedom = std::max(1, used - unknowns);
         const PooledSigma pooled = pooled_sigma(std::sqrt(rss / freedom), freedom, noise);
         const double sigma2 =
             pooled.sigma_mm * pooled.sigma_mm * pooled.widening * alike_widening(scratch_, unknowns, noise);
         feature.rms_mm = std::sqrt(rss / used);
-        feature.point_mm = circle.centre;
         const Eigen::Matrix3d covariance = sigma2 * normal.ldlt().solve(Eigen::Matrix3d::Identity());
         feature.covariance_mm2 = covariance.topLeftCorner<2, 2>();
+        double arc = 0;
+        longest_run(circle, std::max(gate, kCircleLeastGate_mm), arc);
+        return judged(feature, circle, arc, feature.covariance_mm2);
+    }
+
+    Feature judged(Feature feature, const Circle& circle, double arc,
+                   const Eigen::Matrix2d& covariance) const {
+        feature.point_mm = circle.centre;
         if (known_ <= 0 && (circle.radius < smallest_ || circle.radius > largest_)) {
             feature.status = FeatureStatus::not_found;
             feature.message = Text("the radius of {:.3g} mm is not within the limits", circle.radius);
             return feature;
         }
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
-        eigen.computeDirect(feature.covariance_mm2);
+        eigen.computeDirect(covariance);
         const double worst = std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
-        double arc = 0;
-        longest_run(circle, std::max(gate, kCircleLeastGate_mm), arc);
         if (arc < minimum_arc_ || !(worst < kCircleUncertain * circle.radius)) {
             feature.status = FeatureStatus::ill_conditioned;
             feature.message =
@@ -303,9 +309,40 @@ class CircleFinder final : public FeatureFinder {
         return feature;
     }
 
+    // The same arc and the straights beside it, where there are such. `circle` may have slid off the arc on to a straight:
+    // then from where it began.
+    Feature with_straights(const Feature& alone, const Circle& begun, const Circle& circle,
+                           const ProfileNoise& noise) const {
+        const double tolerance =
+            std::max(3 * contour_noise_mm(points_.x, points_.z, scratch_), kCircleLeastTolerance_mm);
+        ArcPlace place{circle, 0, 0, 0, 0};
+        double arc = 0;
+        longest_run(circle, tolerance, arc, &place.first, &place.last);
+        if (alone.status == FeatureStatus::not_found || arc < minimum_arc_) {
+            place.circle = begun;
+            longest_run(begun, tolerance, arc, &place.first, &place.last);
+        }
+        place.from = place.first;
+        place.to = place.last;
+        for (const auto& piece : points_.pieces) {
+            const int last = piece.first + piece.count - 1;
+            if (place.first >= piece.first && place.first <= last) place.from = piece.first;
+            if (place.last >= piece.first && place.last <= last) place.to = last;
+        }
+        FittedArc fitted;
+        if (arc < minimum_arc_ || !arc_.fit(points_.x, points_.z, place, known_ > 0, noise, fitted))
+            return alone;
+        Feature feature;
+        feature.covariance_mm2 = fitted.covariance;
+        feature.rms_mm = fitted.rms;
+        feature.points_used = fitted.used;
+        return judged(feature, fitted.circle, fitted.arc, fitted.within);
+    }
+
     FeatureWindow window_;
     double known_, smallest_, largest_, minimum_arc_;
     mutable FeaturePoints points_;
+    mutable ArcFit arc_;
     mutable std::vector<double> scratch_;
     mutable std::vector<std::array<int, 3>> rows_;  // first, last, count
     mutable std::vector<std::uint8_t> keep_;

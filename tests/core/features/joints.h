@@ -357,7 +357,7 @@ inline Scene rim_centre(Dice& dice) {
     s.either =
         radius < 12 * s.sensor.pitch || s.sensor.noise > 0.004 * std::sqrt(radius / s.sensor.pitch) * radius;
     s.turn(dice.uniform(-5, 5), {dice.uniform(-8, 8), dice.uniform(-20, 20)});
-    // The arc alone, from where it has begun.
+    // The arc alone, from where it has begun; that no straight hides in its noise nobody tells.
     const Vector2d from = s.sheets[0][1 + 8], to = s.sheets[0].back();
     s.window(from.x(), to.x() + 0.5);
     return s;

@@ -39,21 +39,32 @@ struct Repeated {
     int points, longest;
 };
 
-// Values of two neighbours and more that look like a code or stand far from the point before.
+// Values that look like a code or stand far from the point before: of two neighbours and more, or of single points that
+// stand far from both of theirs.
 void repeated_values(const Profile& profile, const std::vector<std::size_t>& seen,
                      std::vector<Repeated>& found) {
     found.clear();
     constexpr std::size_t kMost = 16;
     const auto z = [&](std::size_t k) { return profile.z_mm[seen[k]]; };
+    thread_local std::vector<double> sorted;
+    sorted.clear();
+    for (const std::size_t k : seen) sorted.push_back(profile.z_mm[k]);
+    std::sort(sorted.begin(), sorted.end());
+    const auto points_at = [&](double value) {
+        const auto [from, to] = std::equal_range(sorted.begin(), sorted.end(), value);
+        return static_cast<int>(to - from);
+    };
     for (std::size_t k = 0; k < seen.size();) {
         std::size_t end = k + 1;
         while (end < seen.size() && z(end) == z(k)) ++end;
         const std::size_t first = k;
         k = end;
-        if (end - first < 2) continue;
         const double value = z(first);
-        const bool far = (first > 0 && std::abs(z(first - 1) - value) > kFar_mm) ||
-                         (end < seen.size() && std::abs(z(end) - value) > kFar_mm);
+        const bool before = first == 0 || std::abs(z(first - 1) - value) > kFar_mm;
+        const bool after = end == seen.size() || std::abs(z(end) - value) > kFar_mm;
+        const bool alone = end - first < 2;
+        if (alone && !(before && after && points_at(value) >= kFewestPoints)) continue;
+        const bool far = (first > 0 && before) || (end < seen.size() && after);
         if (!far && !written_like_a_code(value)) continue;
         const int length = static_cast<int>(end - first);
         const auto at =
@@ -63,8 +74,7 @@ void repeated_values(const Profile& profile, const std::vector<std::size_t>& see
         else if (found.size() < kMost)
             found.push_back({value, 0, length});
     }
-    for (Repeated& r : found)
-        for (std::size_t k = 0; k < seen.size(); ++k) r.points += z(k) == r.value;
+    for (Repeated& r : found) r.points = points_at(r.value);
 }
 
 // What the points beside the suspect are like.

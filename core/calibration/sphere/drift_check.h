@@ -13,9 +13,15 @@
 // its shift, two the turn across their line, three not on a line all six. Directions not determined stay zero
 // and are named.
 //
-// Significance: sum e^T S^-1 e against chi-squared at 99 %; the change's own sigma beside it. `holds` is a
-// statement too: only when every direction is determined to half its limit and the change lies within. What
-// is neither a significant change nor known to be within the limits is undetermined.
+// The stored calibration errs too: what its mounting and the known centre are off shows in every e_i alike. Where their
+// covariance C is given, the e_i together have blocks S_i plus J C J^T (J: by_stored of each), and a change counts against
+// both; without it they are taken as exact, and what they err is taken for a change.
+//
+// Significance: sum e^T S^-1 e against chi-squared at 99 %; the change's own sigma beside it. Where the measurements scatter
+// about the fitted change by more than their S_i make likely, each S_i is widened by an equal variance on every axis until chi
+// squared is what is expected (the robot's repeatability was not stated, or is worse), and the change counts by F. `holds` is
+// a statement too: only when every direction is determined to half its limit and the change lies within. What is neither a
+// significant change nor known to be within the limits is undetermined.
 
 #include <string>
 #include <vector>
@@ -26,6 +32,9 @@
 
 namespace seamwright {
 
+// Of the stored calibration: mounting (tangent of pose.h), the sphere's centre in the base, its radius; mm and rad.
+using StoredCovariance = Eigen::Matrix<double, 10, 10>;
+
 struct DriftMeasurement {
     std::string id;
     Pose base_from_flange = Pose::Identity();
@@ -33,7 +42,13 @@ struct DriftMeasurement {
     Eigen::Vector3d known_base_mm = Eigen::Vector3d::Zero();
     // Of e_i in the flange frame: sensor, robot repeatability and the known place together.
     Eigen::Matrix3d covariance = 0.0025 * Eigen::Matrix3d::Identity();
+    // How e_i goes with the stored numbers; their order as in StoredCovariance.
+    Eigen::Matrix<double, 3, 10> by_stored = Eigen::Matrix<double, 3, 10>::Zero();
 };
+
+// By the mounting alone: of a place that was measured through it.
+Eigen::Matrix<double, 3, 6> drift_by_mounting(const Pose& stored_flange_from_sensor,
+                                              const Eigen::Vector3d& measured_flange_mm);
 
 // The measurement that one profile of a sphere gives through the stored calibration: the circle in the laser
 // plane, and the centre's distance from that plane by sqrt(r^2 - rho^2) with the sign that the stored
@@ -67,8 +82,10 @@ struct DriftResult {
     CalibrationReport report;                       // poses: per-measurement |e_i|; judgement
 };
 
-// Error: no measurement, covariance not positive definite, NaN, metres.
+// `stored`: zero where the stored calibration is taken as exact. Error: no measurement, a covariance that is none, NaN,
+// metres.
 Expected<DriftResult> check_drift(const std::vector<DriftMeasurement>& measurements,
-                                  const DriftLimits& limits = {});
+                                  const DriftLimits& limits = {},
+                                  const StoredCovariance& stored = StoredCovariance::Zero());
 
 }  // namespace seamwright

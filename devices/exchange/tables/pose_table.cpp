@@ -77,6 +77,30 @@ Expected<Pose> pose_of(const PoseForm& form, const PoseRow& row) {
     return make_pose(r, t);
 }
 
+// One pose in metres among others in millimetres: it stands next to the base, and a thousandfold where the others do.
+Expected<void> check_one_unit(const std::vector<PoseRow>& rows, bool matrix) {
+    constexpr double kNear = 10, kAlike = 3;
+    const auto reach = [&](const PoseRow& row) {
+        const auto& n = row.numbers;
+        return matrix ? std::hypot(n[3], n[7], n[11]) : std::hypot(n[0], n[1], n[2]);
+    };
+    std::vector<double> reaches;
+    for (const PoseRow& row : rows) reaches.push_back(reach(row));
+    const auto middle = reaches.begin() + static_cast<std::ptrdiff_t>(reaches.size() / 2);
+    std::nth_element(reaches.begin(), middle, reaches.end());
+    for (const PoseRow& row : rows) {
+        const double mm = reach(row), if_metres = 1000 * mm;
+        if (mm<kNear&& * middle> kNearForMillimetres && if_metres > *middle / kAlike &&
+            if_metres < *middle * kAlike)
+            return input_error(
+                Text("its position is {:.4g} from the base where the others are about {:.4g}: metres among "
+                     "millimetres",
+                     mm, *middle),
+                row.at, "write all positions in one unit, or say with --pose-unit mm that they are");
+    }
+    return {};
+}
+
 // Units that neither person nor header named: usual ones, unless the numbers speak against them.
 Expected<void> settle_units(PoseForm& form, const std::vector<PoseRow>& rows, const std::string& where) {
     const bool matrix = form.convention == "matrix";
@@ -94,6 +118,7 @@ Expected<void> settle_units(PoseForm& form, const std::vector<PoseRow>& rows, co
         if (farthest > kFarthestPose_mm)
             return input_error(Text("positions reach {:.4g}, which looks like micrometres", farthest), where,
                                "say the unit with --pose-unit mm or um");
+        SEAM_OK(check_one_unit(rows, matrix));
         form.mm = 1;
     }
     const bool angles = !matrix && !form.convention.starts_with("quat");

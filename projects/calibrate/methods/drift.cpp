@@ -1,14 +1,17 @@
 // {"flange_from_sensor":POSE
 // (stored),"observations":[{"id"?,"base_from_flange":POSE,"profile":[[x,z],..],"centre_base_mm":[3],
-//  "radius_mm"}],"other_sigma_mm"?,"robot":{"sigma_mm","sigma_deg"?}?,"limits":{"translation_mm","rotation_deg"}?}: centre and radius may stand
-//  once at the top; or
+//  "radius_mm"}],"other_sigma_mm"?,"robot":{"sigma_mm","sigma_deg"?}?,"limits":{"translation_mm","rotation_deg"}?,
+//  "covariance"?}: centre and radius may stand once at the top; or
 // {"measurements":[{"id"?,"base_from_flange":POSE,"measured_flange":[3],"known_base":[3],"sigma_mm"?}],"limits"?}
 // (plate points).
+// "covariance": of the stored calibration as the result of tcp-sphere holds it, 9x9 or 10x10 in mm and deg (mounting, centre
+// at the top, radius where it was solved for), or 6x6 of the mounting alone; absent: taken as exact, which a notice says.
 // ->
 // {"status":"holds|drifted|undetermined","change":POSE,"change_mm","change_deg","sigma_mm","sigma_deg","chi_squared",
 //     "chi_squared_limit","not_determined",...}
 
 #include <algorithm>
+#include <optional>
 
 #include "core/calibration/sphere/drift_check.h"
 #include "devices/exchange/json_fields.h"
@@ -45,6 +48,8 @@ Expected<std::vector<DriftMeasurement>> from_spheres(const json& data,
         SEAM_TRY(auto centre,
                  json_vector3(entry_or_top(entry, data, "centre_base_mm"), "centre_base_mm", where));
         SEAM_TRY(auto measurement, drift_measurement(observation, radius, stored, centre, other));
+        // A sphere with a centre of its own is not the one that the calibration knows.
+        if (entry.contains("centre_base_mm")) measurement.by_stored.rightCols<4>().setZero();
         measurements.push_back(measurement);
     }
     return measurements;
@@ -53,6 +58,12 @@ Expected<std::vector<DriftMeasurement>> from_spheres(const json& data,
 Expected<std::vector<DriftMeasurement>> from_points(const json& data,
                                                     const std::vector<std::string>& exclude) {
     SEAM_TRY(auto list, json_array(data, "measurements", ""));
+    std::optional<Pose> stored;
+    if (data.contains("covariance")) {
+        SEAM_TRY(auto stored_field, json_field(data, "flange_from_sensor", ""));
+        SEAM_TRY(auto pose, parse_pose(*stored_field, "flange_from_sensor"));
+        stored = pose;
+    }
     std::vector<DriftMeasurement> measurements;
     for (std::size_t i = 0; i < list->size(); ++i) {
         const json& entry = (*list)[i];
@@ -66,6 +77,7 @@ Expected<std::vector<DriftMeasurement>> from_points(const json& data,
         m.base_from_flange = pose;
         SEAM_TRY(auto measured, json_vector3(entry, "measured_flange", where));
         m.measured_flange_mm = measured;
+        if (stored) m.by_stored.leftCols<6>() = drift_by_mounting(*stored, measured);
         SEAM_TRY(auto known, json_vector3(entry, "known_base", where));
         m.known_base_mm = known;
         SEAM_TRY(auto sigma, json_number_or(entry, "sigma_mm", 0.05, where));
@@ -74,6 +86,28 @@ Expected<std::vector<DriftMeasurement>> from_points(const json& data,
         measurements.push_back(m);
     }
     return measurements;
+}
+
+// "covariance", zero where absent.
+Expected<StoredCovariance> stored_covariance(const json& data) {
+    StoredCovariance stored = StoredCovariance::Zero();
+    const auto it = data.find("covariance");
+    if (it == data.end() || it->is_null()) return stored;
+    const std::size_t n = it->is_array() ? it->size() : 0;
+    if (n != 6 && n != 9 && n != 10)
+        return input_error("the covariance of the stored calibration is no matrix of 6, 9 or 10 rows",
+                           "covariance", "give it as the calibration's result states it");
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t k = 0; k < n; ++k) {
+            const json& row = (*it)[i];
+            if (!row.is_array() || row.size() != n || !row[k].is_number())
+                return input_error("the covariance of the stored calibration is no square of numbers",
+                                   "covariance", "give it as the calibration's result states it");
+            const auto turns = [](std::size_t at) { return at >= 3 && at < 6 ? rad_from_deg(1) : 1.0; };
+            stored(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
+                row[k].get<double>() * turns(i) * turns(k);
+        }
+    return stored;
 }
 
 // The flange stands off by what the robot repeats, and its turn acts with the lever to the place that is measured.
@@ -97,9 +131,15 @@ Expected<CalibrationSolution> solve_drift(const json& data, const ExcludedIds& e
     if (!measurements) return tl::unexpected(measurements.error());
     SEAM_TRY(const auto robot, repeatability_of(data));
     add_repeatability(robot, *measurements);
-    SEAM_TRY(auto checked, check_drift(*measurements, limits));
+    SEAM_TRY(const auto stored, stored_covariance(data));
+    SEAM_TRY(auto checked, check_drift(*measurements, limits, stored));
 
     CalibrationSolution solution;
+    if (stored.isZero(0))
+        solution.notices.emplace_back(
+            "the covariance of the stored calibration is not given: its mounting and centre are taken as "
+            "exact, and "
+            "what they err is taken for a change");
     json& result = solution.document;
     result["status"] = std::string(name_of(checked.status));
     result["change"] = pose_json(checked.change);
@@ -118,17 +158,37 @@ Expected<CalibrationSolution> solve_drift(const json& data, const ExcludedIds& e
     return solution;
 }
 
+// Of a good calibration: 0.02 mm and 0.004 degrees.
+json example_covariance() {
+    Eigen::VectorXd sigma = Eigen::VectorXd::Constant(9, 0.02);
+    sigma.segment<3>(3).setConstant(0.004);
+    return matrix_json(sigma.cwiseAbs2().asDiagonal());
+}
+
 json drift_example() {
     json observations = example::sphere_observations();
     return {{"flange_from_sensor", pose_json(example::flange_from_sensor())},
             {"centre_base_mm", example::vector3_json(example::base_from_target().translation())},
             {"radius_mm", example::kRadius_mm},
+            {"covariance", example_covariance()},
             {"observations", observations}};
 }
 
 Expected<json> prepare_drift(json settings, const Calibration* base, const std::vector<Calibration>&) {
     if (!base) return input_error("there is no calibration in use to check", "drift", "calibrate first");
     settings["flange_from_sensor"] = pose_json(base->flange_from_sensor);
+    if (!settings.contains("covariance") && base->result.contains("covariance") &&
+        base->result["covariance"].is_array()) {
+        const std::size_t rows = base->result["covariance"].size();
+        if (base->result.contains("centre_base_mm") && !settings.contains("centre_base_mm") &&
+            (rows == 9 || rows == 10))
+            settings["covariance"] = base->result["covariance"];
+    }
+    if (!settings.contains("covariance") && !base->covariance.isZero(0)) {
+        Vector6 unit = Vector6::Ones();
+        unit.tail<3>().setConstant(deg_from_rad(1));
+        settings["covariance"] = matrix_json(unit.asDiagonal() * base->covariance * unit.asDiagonal());
+    }
     if (base->result.contains("centre_base_mm") && base->result["centre_base_mm"].is_array() &&
         !settings.contains("centre_base_mm")) {
         settings["centre_base_mm"] = base->result["centre_base_mm"];
@@ -150,7 +210,7 @@ CalibrationMethod drift_method() {
     m.usage = "measured.json";
     m.layout =
         R"({"flange_from_sensor":POSE,"centre_base_mm":[x,y,z],"radius_mm":R,"other_sigma_mm"?,"robot":{"sigma_mm","sigma_deg"?}?,
-   "limits":{"translation_mm","rotation_deg"}?,"observations":[{"id"?,"base_from_flange":POSE,"profile":[[x,z],..]},..]}
+   "limits":{"translation_mm","rotation_deg"}?,"covariance":as in tcp-sphere's result?,"observations":[{"id"?,"base_from_flange":POSE,"profile":[[x,z],..]},..]}
   or {"measurements":[{"id"?,"base_from_flange":POSE,"measured_flange":[x,y,z],"known_base":[x,y,z],"sigma_mm"?},..]})";
     m.example = drift_example;
     m.poses = {{"observations", kRobotPose}, {"measurements", kRobotPose}};

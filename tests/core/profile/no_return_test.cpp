@@ -52,6 +52,19 @@ TEST(NoReturn, TheUsualCodesAreSeenWhateverTheHeights) {
                     }
 }
 
+// Each lost line alone between two that are seen; beside spikes, which are none.
+TEST(NoReturn, LinesThatAreLostOneByOne) {
+    for (const double code : {-9999., -32768., -99.999, 9999.99, 99999.})
+        for (const double noise : {0.01, 0.1}) {
+            Profile p = sheet(std::nan(""), 12, 5, 0.02, noise, 0, 3);
+            for (std::size_t k = 5; k < p.size(); k += 33) p.z_mm[k] = code;
+            for (std::size_t k = 10; k < p.size(); k += 20) p.z_mm[k] = 60 + 3.1 * double(k);
+            const auto codes = find_no_return_codes(p);
+            ASSERT_EQ(codes.size(), 1U) << code;
+            EXPECT_EQ(codes[0].value, code);
+        }
+}
+
 TEST(NoReturn, HeightsAreNoCodes) {
     const double none = std::nan("");
     for (unsigned seed = 1; seed < 200; ++seed) {

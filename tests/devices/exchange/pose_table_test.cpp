@@ -79,6 +79,8 @@ TEST(PoseTable, UnitsAndConventionsAreAsked) {
     expect_no_poses("x,y,z,rx,ry,rz\n800,-50,600,1.57,0,0\n", "--pose-convention");
     expect_no_poses("800 -50 600 90 0 0\n", "--pose-angle", {"ur-rotvec", "", ""});
     expect_no_poses("x,y,z,a,b,c\n800000,-50,600,90,0,0\n", "--pose-unit");
+    expect_no_poses("x,y,z,a,b,c\n800,-50,600,90,0,0\n0.81,-0.04,0.62,90,0,0\n790,-60,610,90,0,0\n",
+                    "metres among");
 }
 
 TEST(PoseTable, HostileTables) {

@@ -159,5 +159,79 @@ TEST(DriftCheck, RefusesBadInput) {
     EXPECT_FALSE(drift_measurement(empty, 10, Pose::Identity(), Eigen::Vector3d::Zero(), 0.01).has_value());
 }
 
+// Of a calibration by the same robot on the same sphere, nothing moved since: what the stored numbers err is no drift.
+// Neither is a robot that is less exact than was stated.
+struct Told {
+    int drifted = 0, as_if_exact = 0, unstated = 0, moved = 0;
+};
+
+Told tell_drift(double robot_mm, int trials) {
+    Told told;
+    for (unsigned seed = 0; seed < static_cast<unsigned>(trials); ++seed) {
+        Random random(seed + 3000);
+        SphereCell cell = any_cell(random);
+        cell.robot_mm = robot_mm;
+        cell.robot_deg = 0.1 * robot_mm;
+        TcpSphereOptions options;
+        options.radius_mm = cell.radius;
+        options.robot = {cell.robot_mm, rad_from_deg(cell.robot_deg)};
+        const auto stored = calibrate_tcp_sphere(sphere_observations(cell, 12, random), options);
+        EXPECT_TRUE(stored.has_value() && stored->status == TcpSphereStatus::ok);
+        if (!stored || stored->status != TcpSphereStatus::ok) continue;
+        StoredCovariance covariance = StoredCovariance::Zero();
+        Eigen::Matrix<double, 9, 1> unit = Eigen::Matrix<double, 9, 1>::Ones();
+        unit.segment<3>(3).setConstant(rad_from_deg(1));
+        covariance.topLeftCorner<9, 9>() = unit.asDiagonal() * stored->report.covariance * unit.asDiagonal();
+        for (const double moved_mm : {0.0, 1.5}) {
+            SphereCell now = cell;
+            now.flange_from_sensor.translation() += moved_mm * Eigen::Vector3d(0.6, -0.64, 0.48);
+            std::vector<DriftMeasurement> list, bare;
+            for (const auto& observation : sphere_observations(now, 12, random)) {
+                auto m = drift_measurement(observation, cell.radius, stored->flange_from_sensor,
+                                           stored->centre_base_mm, 0.01);
+                if (!m) continue;
+                bare.push_back(*m);
+                const Eigen::Matrix3d lever = skew(m->measured_flange_mm);
+                m->covariance += robot_mm * robot_mm * Eigen::Matrix3d::Identity() +
+                                 std::pow(rad_from_deg(cell.robot_deg), 2) * lever * lever.transpose();
+                list.push_back(*m);
+            }
+            const auto drifted = [](const Expected<DriftResult>& r) {
+                return r && r->status == DriftStatus::drifted ? 1 : 0;
+            };
+            if (moved_mm > 0) {
+                told.moved += drifted(check_drift(list, {}, covariance));
+                continue;
+            }
+            told.drifted += drifted(check_drift(list, {}, covariance));
+            told.as_if_exact += drifted(check_drift(list));
+            told.unstated += drifted(check_drift(bare, {}, covariance));
+        }
+    }
+    return told;
+}
+
+TEST(DriftCheck, WhatTheStoredCalibrationErrsIsNoDrift) {
+    for (const double robot_mm : {0.03, 0.05, 0.1}) {
+        const Told told = tell_drift(robot_mm, 40);
+        EXPECT_LE(told.drifted, 2) << robot_mm;
+        EXPECT_LE(told.unstated, 2) << robot_mm;
+        EXPECT_GE(told.as_if_exact, told.drifted) << robot_mm;
+        EXPECT_GE(told.moved, 36) << robot_mm;
+    }
+}
+
+TEST(DriftCheck, RefusesACovarianceThatIsNone) {
+    DriftMeasurement m;
+    m.id = "a";
+    m.base_from_flange.translation() = Eigen::Vector3d(500, 0, 0);
+    StoredCovariance none = StoredCovariance::Identity();
+    none(2, 2) = -1;
+    EXPECT_FALSE(check_drift({m}, {}, none).has_value());
+    none = StoredCovariance::Identity();
+    none(0, 1) = 0.5;
+    EXPECT_FALSE(check_drift({m}, {}, none).has_value());
+}
+
 }  // namespace
 }  // namespace seamwright

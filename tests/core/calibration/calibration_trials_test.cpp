@@ -71,7 +71,7 @@ class TcpSphereWithRobotErrors : public testing::TestWithParam<std::tuple<double
 
 TEST_P(TcpSphereWithRobotErrors, StatesWhatTheHalvesShow) {
     const auto [robot_mm, radius_free] = GetParam();
-    constexpr int kTrials = 150;
+    constexpr int kTrials = 90;
     std::vector<int> inside(10), agree(10);
     int halves = 0;
     for (unsigned trial = 0; trial < kTrials; ++trial) {

@@ -48,22 +48,17 @@ const std::vector<Kind>& kinds() {
     return all;
 }
 
-int trials() {
-    const char* asked = std::getenv("SEAMWRIGHT_TRIALS");
-    return asked ? std::atoi(asked) : 600;
-}
-
 // What neighbours have in common; such a sensor delivers the lines as they stand.
 struct Shared {
     int smoothed = 1, speckle = 1;
     bool any() const { return smoothed > 1 || speckle > 1; }
 };
 
-Tally tally_of(const Kind& kind, const Shared& shared) {
+Tally tally_of(const Kind& kind, const Shared& shared, int trials) {
     const char* seed = std::getenv("SEAMWRIGHT_SEED");
     Tally tally;
     Dice dice(seed ? std::strtoull(seed, nullptr, 10) : 11);
-    for (int i = 0; i < trials(); ++i) {
+    for (int i = 0; i < trials; ++i) {
         Scene scene = kind.make(dice);
         if (dice.chance(0.5)) scene.mirror();
         // Which sheet covers the other is a matter of the z axis; a recipe for a sensor that looks along -z says the segment.
@@ -101,7 +96,7 @@ Tally tally_of(const Kind& kind, const Shared& shared) {
 
 TEST(ContourScenes, RightOrRefusedButNeverWrong) {
     for (const Kind& kind : kinds()) {
-        const Tally tally = tally_of(kind, {});
+        const Tally tally = tally_of(kind, {}, trials_of(600));
         // Where a lap's step is at the limit of what can be seen, about nine sigma, one end in some hundred
         // is that of the other sheet.
         EXPECT_LE(tally.wrong, tally.all() / 500) << kind.name;
@@ -137,7 +132,7 @@ TEST(ContourScenes, SharedNoiseMakesNoOthers) {
             {"fillet weld, toe in a window", weld_toe, 0.97},
         };
         for (const Kind& kind : kinds) {
-            const Tally tally = tally_of(kind, shared);
+            const Tally tally = tally_of(kind, shared, trials_of(600));
             EXPECT_LE(tally.wrong, tally.all() / 200)
                 << kind.name << " " << shared.smoothed << shared.speckle;
             EXPECT_GE(tally.right, kind.least_right * tally.all())

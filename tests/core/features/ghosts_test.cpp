@@ -95,7 +95,7 @@ TEST(Ghosts, TheTaughtContourTellsThemFromTheStripe) {
         Dice dice(seed_of(103));
         Tally alone, taught_too;
         int lost_to_it = 0;
-        const int trials = trials_of(200);
+        const int trials = trials_of(120);
         for (int i = 0; i < trials; ++i) {
             const Joint joint = kMakers[dice.of(std::size(kMakers))](dice);
             SensorModel s;

@@ -11,7 +11,7 @@
 namespace seamwright::evaluation {
 namespace {
 
-EvaluationSettings settings(int experiment = 0, int trials = 300) {
+EvaluationSettings settings(int experiment = 0, int trials = 150) {
     EvaluationSettings s;
     s.experiment = experiment;
     s.trials = trials;
@@ -25,7 +25,7 @@ Expected<EvaluationResult> run(const EvaluationSettings& s) {
 
 TEST(Evaluation, StraightContoursReachTheBoundAndStateTheTruth) {
     std::atomic<std::size_t> profiles{0};
-    const auto r = straight_trials(settings(), profiles);
+    const auto r = straight_trials(settings(0, 300), profiles);
     ASSERT_TRUE(r) << r.error().sentence();
     // 300 trials of 6 degrees: the efficiency scatters by 0.033.
     EXPECT_GT(r->efficiency, 0.86);
@@ -54,7 +54,7 @@ TEST(Evaluation, BoundIsProportionalToTheNoise) {
 TEST(Evaluation, LearntCurveTakesTheBiasOfTheStraightLineAway) {
     std::atomic<std::size_t> profiles{0};
     for (const double radius : {350.0, 2000.0}) {
-        const auto r = curved_contour(settings(), radius, profiles);
+        const auto r = curved_contour(settings(0, 300), radius, profiles);
         ASSERT_TRUE(r) << r.error().sentence();
         ASSERT_EQ(r->radius_mm, radius);
         int at_ten = 0;

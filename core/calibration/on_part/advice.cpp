@@ -149,6 +149,8 @@ std::vector<Text> next_passes(const Data& data, const State& state, const Varian
     constexpr double kStraight = 1e-6;  // 1/mm, curvature of an edge that is added
     constexpr double kBetter = 0.98;    // of the best variance so far, below which a pass is the better one
     std::vector<Text> words;
+    if (std::none_of(data.sights.begin(), data.sights.end(), [](const Sight& s) { return s.used; }))
+        return words;  // no pass is there to be taken again otherwise
     Data with = data;
     State at = state;
     for (Vector6& p : at.passes) p.setZero();

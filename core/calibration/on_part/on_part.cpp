@@ -242,9 +242,9 @@ Expected<OnPartResult> calibrate_on_part(const std::vector<EdgePass>& passes, co
         return refused(names, OnPartStatus::undetermined, Text("{} profiles are too few to solve from", all),
                        "make passes of ten profiles and more, from several attitudes");
     const auto none = [&] {
-        return refused(
-            names, OnPartStatus::not_converged, "no smooth edge is common to the passes",
-            "check that the part stands still, that every pass names its edge, and the robot's poses");
+        return refused(names, OnPartStatus::not_converged, "the passes do not lie on one smooth edge each",
+                       "check that passes of different edges name different ones, that the part stands "
+                       "still, and which way round the robot's poses are written (base from flange)");
     };
     if (!options.prior) {
         const auto found = find(data, starts(data), options);

@@ -26,6 +26,7 @@ constexpr double kFirstPass_mm = 0.06, kFirstCurvature = 0.01;  // the variances
 constexpr double kGross_mm = 0.6, kGrossTimes = 8;
 constexpr double kWhiteSettled = 0.02;  // relative change of the white noise that ends the rounds
 constexpr double kFewTimes = 1.5;       // what an estimate from few passes may be too small by
+constexpr double kKept = 0.5;           // of the profiles: where fewer agree, the edge is not theirs
 constexpr double kExactRobot_mm = 1e-4, kExactRobot_rad = 1e-7;  // no stated robot is better
 
 Variances first_guess(std::size_t edges) {
@@ -90,6 +91,10 @@ void drop_beyond_ends(Data& data, double latency_s) {
 void drop_passes(Data& data, const std::vector<bool>& which) {
     for (Sight& s : data.sights)
         if (which[s.pass]) s.used = false;
+}
+
+std::ptrdiff_t used_of(const Data& data) {
+    return std::count_if(data.sights.begin(), data.sights.end(), [](const Sight& s) { return s.used; });
 }
 
 void robustly(Data& data, State& state, const Variances& guess, std::vector<bool>& wrong) {
@@ -194,6 +199,7 @@ Refined refine(const Data& data, const State& start, const std::optional<RobotRe
             leave_out_profiles(r.data, blocks, 5 * kWrongProfile * kLeastNoise_mm / mean_sigma(r.data));
         }
         if (!settle(r, how)) return r;
+        if (static_cast<double>(used_of(r.data)) < kKept * static_cast<double>(used_of(data))) return r;
         r.working_point = mean_point(r.data);
         const auto wrong = left_out < most ? contradicting(r, how) : std::nullopt;
         if (!wrong) break;

@@ -1,6 +1,7 @@
 #pragma once
-// From a start to the answer: wrong profiles and passes left out, variances estimated, solved again. Private to
-// core/calibration/on_part.
+// From a start to the answer: wrong profiles and passes left out, variances estimated, solved again. Not solved: no state
+// is possible there, or fewer than half of the profiles agree with it (then the edge that it found is not theirs). Private
+// to core/calibration/on_part.
 
 #include "core/calibration/on_part/variances.h"
 

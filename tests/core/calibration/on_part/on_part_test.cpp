@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <random>
+
 #include "tests/core/calibration/on_part/part_cell.h"
 #include "tests/core/calibration/sphere/sphere_simulation.h"
 
@@ -318,6 +321,64 @@ TEST(OnPart, AnExcludedPassIsJudgedByTheOthers) {
     EXPECT_FALSE(r->report.poses[1].used);
     EXPECT_LT(r->report.poses[1].rms_mm, 0.5);
     EXPECT_TRUE(std::isnan(r->report.poses[3].rms_mm));
+}
+
+// Profiles of straight passes along straight edges, each pass with one attitude and no turn within it.
+std::vector<EdgePass> rigid_passes(unsigned seed, int count, int edges, const Pose& mounting,
+                                   double latency_s) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0, 0.03);
+    std::uniform_real_distribution<double> u(-1, 1);
+    const std::array<Pose, 2> edge = {
+        make_pose(rotation_exp({-0.14, 0.09, 0.26}), {900, 150, 250}),
+        make_pose(rotation_exp({0.21, -0.1, 1.75}), {980, 60, 230})};  // along X
+    constexpr double kSpeed_mm_s = 60;
+    std::vector<EdgePass> list;
+    for (int i = 0; i < count; ++i) {
+        const Pose& at = edge[static_cast<std::size_t>(i % edges)];
+        const Eigen::Vector3d lean = 25 * Cell::kDeg * Eigen::Vector3d(u(random), u(random), u(random));
+        const Eigen::Matrix3d sensor = at.linear() * rotation_exp({0, 0, 1.5707963}) * rotation_exp(lean);
+        const Eigen::Vector3d off(10 * u(random), 0, 10 * u(random)), along = at.linear().col(0);
+        const Eigen::Vector3d travel = (i % 2 ? -kSpeed_mm_s : kSpeed_mm_s) * along;
+        const auto seen_from = [&](double t) {
+            return make_pose(sensor, at.translation() + travel * t - sensor * off);
+        };
+        EdgePass pass{"P" + std::to_string(i + 1), "e" + std::to_string(i % edges + 1), {}};
+        for (int k = 0; k < 25; ++k) {
+            const double t = 0.02 * (k - 12);
+            const Pose before = seen_from(t - latency_s);
+            const Eigen::Vector3d across = before.linear().col(1);
+            const double s = across.dot(before.translation() - at.translation()) / across.dot(along);
+            const Eigen::Vector3d p = before.inverse() * (at.translation() + s * along);
+            EdgeProfile profile;
+            profile.time_s = 10.0 * i + t;
+            profile.base_from_flange = seen_from(t) * mounting.inverse();
+            profile.point_mm = {p.x() + noise(random), p.z() + noise(random)};
+            pass.profiles.push_back(profile);
+        }
+        list.push_back(pass);
+    }
+    return list;
+}
+const Pose kRigidMounting = make_pose(rotation_exp({0.06, -0.2, 0.38}), {35, -12, 140});
+
+// Poses written the wrong way round, and two edges under one name.
+TEST(OnPart, PassesThatShareNoEdgeAreRefusedWithTheCause) {
+    for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
+        auto inverse = rigid_passes(seed, 10, 2, kRigidMounting, 0.004);
+        for (auto& pass : inverse)
+            for (auto& p : pass.profiles) p.base_from_flange = p.base_from_flange.inverse();
+        auto one_name = rigid_passes(seed, 10, 2, kRigidMounting, 0.004);
+        for (auto& pass : one_name) pass.edge = "e1";
+        for (const auto& passes : {inverse, one_name}) {
+            const auto r = calibrate_on_part(passes);
+            ASSERT_TRUE(r) << r.error().sentence();
+            EXPECT_FALSE(serves(r->report.judgement.verdict)) << seed;
+            EXPECT_THAT(r->report.judgement.reason.english(), HasSubstr("do not lie on one smooth edge"))
+                << seed;
+            EXPECT_THAT(r->report.judgement.cure.english(), HasSubstr("which way round")) << seed;
+        }
+    }
 }
 
 }  // namespace

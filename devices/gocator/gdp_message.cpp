@@ -57,12 +57,13 @@ std::string sized(const std::string& body) {
 struct Head {
     std::size_t data = 0;  // offset of the arrays
     std::size_t count = 0, width = 0;
+    std::size_t attributes = 0;  // bytes
 };
 Expected<Head> head_of(std::string_view content, std::size_t least_attributes, std::size_t bytes_per_point,
                        std::string_view what) {
     if (content.size() < 2) return too_short(what, content.size());
     const std::size_t attributes = at<std::uint16_t>(content, 0);
-    Head head{2 + attributes, 0, 0};
+    Head head{2 + attributes, 0, 0, attributes};
     if (attributes < least_attributes || content.size() < head.data) return too_short(what, content.size());
     head.count = at<std::uint32_t>(content, 2);
     head.width = at<std::uint32_t>(content, 6);
@@ -160,6 +161,7 @@ Expected<Profiles> parse_profiles(Type type, std::string_view content) {
                  z_offset = kMmPerUm * at<std::int32_t>(content, 22);
     Profiles out;
     out.source = at<std::uint8_t>(content, 26);
+    if (head.attributes >= 36) out.step = static_cast<Step>(at<std::int32_t>(content, 34));
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     for (std::size_t c = 0; c < head.count; ++c) {
         Profile& profile = out.profiles.emplace_back();
@@ -204,7 +206,9 @@ std::string points_content(const Profile& profile) {
     put(out, std::uint32_t{1000});
     put(out, offset_um[0]);
     put(out, offset_um[1]);
-    out.resize(2 + 40, '\0');  // source top, exposure, camera, stream step: 0
+    out.resize(2 + 32, '\0');  // source top, exposure, camera
+    put(out, static_cast<std::int32_t>(Step::profile));
+    put(out, std::int32_t{0});
     for (std::size_t i = 0; i < profile.size(); ++i) {
         const double x = std::round(1000 * profile.x_mm[i] - offset_um[0]),
                      z = std::round(1000 * profile.z_mm[i] - offset_um[1]);
@@ -219,6 +223,7 @@ Expected<Intensities> parse_intensities(std::string_view content) {
     SEAM_TRY(const auto head, head_of(content, 24, 1, "intensity"));
     Intensities out;
     out.source = at<std::uint8_t>(content, 18);
+    if (head.attributes >= 28) out.step = static_cast<Step>(at<std::int32_t>(content, 26));
     for (std::size_t c = 0; c < head.count; ++c) {
         auto& row = out.rows.emplace_back(head.width);
         for (std::size_t i = 0; i < head.width; ++i)

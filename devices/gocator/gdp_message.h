@@ -9,7 +9,7 @@
 // A group is what one exposure brings: a stamp message (type 1), then profiles (5: points, 6: equidistant in
 // x), their intensities (7), and others, which are passed over. A profile message begins with the size of its
 // attributes, count and width of its arrays, scales in nm and offsets in um; newer firmware appends
-// attributes, which are passed over too. z = offset + scale * value; a value of -32768 is no return. Source:
+// attributes, among them the step of the sensor's processing that the data come from. z = offset + scale * value; a value of -32768 is no return. Source:
 // the vendor's user manual, chapter "Gocator Protocol" (firmware 4 to 6).
 
 #include <cstdint>
@@ -73,9 +73,14 @@ struct Stamp {
 Expected<std::vector<Stamp>> parse_stamps(std::string_view content);
 std::string stamps_content(const std::vector<Stamp>& stamps);
 
-// Profiles of a message of type points or uniform, all of one source.
+// Where in the sensor's processing data come from: its own contour, or what a tool of its job makes of it. Firmware whose
+// messages do not say so sends contours alone.
+enum class Step : std::int32_t { none = -1, video = 0, profile = 2, section = 4, raw_profile = 5, tool = 8 };
+
+// Profiles of a message of type points or uniform, all of one source and step.
 struct Profiles {
     int source = 0;  // 0 top, 1 bottom, 2 top left, 3 top right
+    std::optional<Step> step;
     std::vector<Profile> profiles;
 };
 Expected<Profiles> parse_profiles(Type type, std::string_view content);
@@ -84,6 +89,7 @@ std::string points_content(const Profile& profile);
 
 struct Intensities {
     int source = 0;
+    std::optional<Step> step;
     std::vector<std::vector<float>> rows;  // 0..1
 };
 Expected<Intensities> parse_intensities(std::string_view content);

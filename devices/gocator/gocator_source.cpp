@@ -15,6 +15,7 @@
 #include "devices/gocator/ascii_result.h"
 #include "devices/gocator/gdp_message.h"
 #include "devices/gocator/gocator.h"
+#include "devices/gocator/gocator_group.h"
 #include "devices/net/socket.h"
 
 namespace seamwright {
@@ -334,14 +335,6 @@ class GocatorSource final : public ProfileSource {
         return {};
     }
 
-    // One exposure in the making.
-    struct Group {
-        std::vector<gdp::Stamp> stamps;
-        std::vector<Profile> profiles;
-        std::vector<std::vector<float>> intensities;
-        bool broken = false;
-    };
-
     // The next frame that is whole in the stream; nullptr: more bytes are needed.
     Expected<FramePtr> next_in_stream() {
         for (;;) {
@@ -358,44 +351,34 @@ class GocatorSource final : public ProfileSource {
             }
             SEAM_TRY(auto message, gdp::take_message(stream_));
             if (!message) return FramePtr();
-            take_message(*message);
+            SEAM_OK(take_message(*message));
         }
     }
 
-    void take_message(const gdp::Message& message) {
-        const auto type = static_cast<gdp::Type>(message.type);
-        if (type == gdp::Type::stamp) {
-            if (auto stamps = gdp::parse_stamps(message.content))
-                group_.stamps = std::move(*stamps);
-            else
-                group_.broken = true;
-        } else if (type == gdp::Type::points || type == gdp::Type::uniform) {
-            auto profiles = gdp::parse_profiles(type, message.content);
-            if (!profiles)
-                group_.broken = true;
-            else if (profiles->source == s_.source)
-                group_.profiles = std::move(profiles->profiles);
-        } else if (type == gdp::Type::intensity) {
-            auto rows = gdp::parse_intensities(message.content);
-            if (!rows)
-                group_.broken = true;
-            else if (rows->source == s_.source)
-                group_.intensities = std::move(rows->rows);
-        }
-        if (!message.last) return;
-        Group group = std::move(group_);
+    // What comes on the data port is of the sensor that answered on the control port.
+    Expected<void> check_serial(const gdp::Stamp& stamp) const {
+        const bool buddy = s_.source != 0;
+        if (stamp.serial == 0 || buddy || std::strtoul(identity_.serial.c_str(), nullptr, 10) == stamp.serial)
+            return {};
+        return device_error(
+            Text("the data are of sensor {}, connected is {}", stamp.serial, identity_.serial), where(),
+            "check address and data port of the sensor");
+    }
+
+    Expected<void> take_message(const gdp::Message& message) {
+        group_.take(message, s_.source);
+        if (!message.last) return {};
+        GocatorGroup group = std::move(group_);
         group_ = {};
-        // Each profile has the stamp of its exposure; anything else cannot be told apart.
-        if (!group.broken && !group.profiles.empty() && group.stamps.size() != group.profiles.size())
-            group.broken = true;
-        if (group.broken) {
+        for (const gdp::Stamp& stamp : group.stamps) SEAM_OK(check_serial(stamp));
+        if (group.unclear()) {
             const auto number = group.stamps.empty() ? next_ : offset_ + group.stamps.front().frame;
             deliver(number, 0, FrameStatus::corrupt, nullptr);
-            return;
+            return {};
         }
         if (group.profiles.empty()) {
             passed_over_ = true;
-            return;
+            return {};
         }
         for (std::size_t i = 0; i < group.profiles.size(); ++i) {
             Profile& profile = group.profiles[i];
@@ -405,6 +388,7 @@ class GocatorSource final : public ProfileSource {
             deliver(offset_ + stamp.frame, static_cast<std::int64_t>(stamp.timestamp_us) * 1000,
                     FrameStatus::ok, &profile);
         }
+        return {};
     }
 
     void take_line(const std::string& line) {
@@ -471,7 +455,7 @@ class GocatorSource final : public ProfileSource {
     std::map<std::uint16_t, int> late_answers_;  // of commands that were not waited for to the end
     std::atomic<bool> running_ = false, given_up_ = false;
     bool passed_over_ = false;
-    Group group_;
+    GocatorGroup group_;
     std::deque<FramePtr> ready_;
     std::uint64_t next_ = 0, offset_ = 0;  // sequence of the next frame; of the sensor's frame 0
     Clock::time_point next_ping_{};

@@ -10,7 +10,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kLook{25};
-constexpr std::chrono::seconds kTell{5};  // how often the wait is told
+constexpr std::chrono::seconds kTell{5};    // how often the wait is told
+constexpr std::chrono::seconds kFrames{1};  // how often the frames are looked at
 
 // The wait for one robot.
 class Waiting {
@@ -18,7 +19,7 @@ class Waiting {
     Waiting(RobotLink& robot, const HoldOptions& options) : robot_(robot), options_(options) {}
 
     // Nothing = it still waits.
-    std::optional<RobotRelease> look(bool time_over, bool next_part) {
+    std::optional<RobotRelease> look(bool time_over, bool next_part, const Text& changed) {
         const Expected<Permission> now = robot_.permission();
         trouble_ = now ? Text() : now.error().text();
         if (now && *now == Permission::taken) return taken();
@@ -28,6 +29,7 @@ class Waiting {
                                      : Text("the robot took the permission back by itself")};
         if (now) ran_ = ran_ || *now == Permission::running;
         const bool running = now && *now == Permission::running;
+        if (!changed.empty()) return give_up(Release::withdrawn, changed);
         if (options_.cancel.stop_requested())
             return give_up(Release::withdrawn, "cancelled before the application had taken the permission");
         if (running) return std::nullopt;
@@ -88,10 +90,14 @@ std::map<std::string, RobotRelease> await_release(const std::map<std::string, Ro
     std::optional<Clock::time_point> until;
     if (options.hold != kHoldForEver) until = Clock::now() + options.hold;
     auto tell_again = Clock::now();
+    auto look_at_frames = Clock::now() + kFrames;
     bool next_part = false;
     while (!open.empty()) {
+        const bool frames = options.frame_changed && Clock::now() >= look_at_frames;
+        if (frames) look_at_frames = Clock::now() + kFrames;
         for (auto it = open.begin(); it != open.end();) {
-            auto outcome = it->second.look(until && Clock::now() >= *until, next_part);
+            const Text changed = frames ? options.frame_changed(it->first) : Text();
+            auto outcome = it->second.look(until && Clock::now() >= *until, next_part, changed);
             if (!outcome) {
                 ++it;
                 continue;

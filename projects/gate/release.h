@@ -25,7 +25,10 @@ struct HoldOptions {
     std::chrono::milliseconds hold = kHold;
     std::stop_token cancel;
     std::function<bool()> part_over;  // the line calls for the next part: nobody will begin any more
-    std::function<void(const Text& text)> progress;
+    std::function<void(const Text& text)> progress = {};
+    // Looked at every second while a robot has not taken its permission: a frame of it that is no longer the one written,
+    // empty: none. The permission is taken back then.
+    std::function<Text(const std::string& robot_id)> frame_changed = {};
 };
 
 struct RobotRelease {

@@ -499,6 +499,20 @@ PushRecord push_region(GatePass&& given, RobotLink& robot, const EventSink& reco
     return give_up(status, EventKind::alarm, joined(trouble, "; ", outcome));
 }
 
+FrameLook look_at_frame(const PushRecord& push, RobotLink& robot) {
+    assert(push.status == PushStatus::written && push.read_back);
+    const Expected<Pose> now = robot.read_frame(push.frame_name);
+    if (!now)
+        return {FrameStands::unread,
+                Text("frame {} cannot be read: {}", push.frame_name, now.error().text())};
+    const FrameDistance off = distance(*now, *push.read_back);
+    if (off.equal()) return {FrameStands::yes, {}};
+    return {
+        FrameStands::differs,
+        Text("frame {} on the controller is not the one that was written (off by {:.4f} mm, {:.5f} degrees)",
+             push.frame_name, off.mm, off.deg)};
+}
+
 void withdraw_push(PushRecord& push, RobotLink& robot, const EventSink& record, EventKind kind) {
     assert(push.status == PushStatus::written && push.before);
     const auto [status, outcome] = put_back(*push.before, push.frame_name, robot);

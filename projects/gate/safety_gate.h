@@ -133,6 +133,15 @@ using EventSink = std::function<Expected<void>(EventKind kind, const std::string
 // the attempt cannot be recorded.
 PushRecord push_region(GatePass&& pass, RobotLink& robot, const EventSink& record);
 
+// Does the frame that a push has written (precondition) still stand on the controller? `differs` in one sentence; `unread`:
+// the controller does not say.
+enum class FrameStands { yes, differs, unread };
+struct FrameLook {
+    FrameStands stands = FrameStands::unread;
+    Text text;
+};
+FrameLook look_at_frame(const PushRecord& push, RobotLink& robot);
+
 // Takes back a push that was written (precondition): a part is corrected with all its regions or with none.
 // The old frame is written and read back, an event recorded (an alarm where that fails), `push` brought up to
 // date. The permission to run must have been taken back before: a frame under a running application would

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <thread>
 
 #include "devices/capture/capture.h"
@@ -28,19 +29,70 @@ void restore_frames(RunRecord& run, const std::map<std::string, RobotLink*>& rob
 
 namespace {
 
+// The frames that a run has written, looked at from the verdict on: a controller may keep them back until then, and a person
+// may change them later. A link whose frames live in itself has nothing to be read.
+class WrittenFrames {
+  public:
+    WrittenFrames(RunRecord& run, const std::map<std::string, RobotLink*>& robots)
+        : run_(run), robots_(robots) {}
+
+    // What differs of this robot's; empty: nothing, or it does not say.
+    Text differing(const std::string& robot_id) {
+        RobotLink& robot = *robots_.at(robot_id);
+        if (!robot.permission_outlives_link()) return {};
+        Text off, unread;
+        for (const PushRecord* push : pushes_of(run_)) {
+            if (push->robot_id != robot_id || push->status != PushStatus::written) continue;
+            const FrameLook look = look_at_frame(*push, robot);
+            if (look.stands == FrameStands::differs) off = joined(off, "; ", look.text);
+            if (look.stands == FrameStands::unread) unread = joined(unread, "; ", look.text);
+        }
+        if (unread.empty()) seen_.insert(robot_id);
+        unread_[robot_id] = unread;
+        return off;
+    }
+    // As above, and what was never seen since the verdict.
+    Text differing_or_unseen(const std::string& robot_id) {
+        const Text off = differing(robot_id);
+        return off.empty() && !seen_.count(robot_id) ? unread_[robot_id] : off;
+    }
+
+    // An alarm of the run, with its event.
+    void raise(const std::string& robot_id, const Text& text, const EventSink& record) {
+        run_.message = wrong_ ? joined(run_.message, "; ", text) : Text("alarm: {}", text);
+        run_.status = RunStatus::alarm;
+        wrong_ = true;
+        (void)record(EventKind::alarm, robot_id, text);
+    }
+    bool wrong() const { return wrong_; }
+
+  private:
+    RunRecord& run_;
+    bool wrong_ = false;
+    const std::map<std::string, RobotLink*>& robots_;
+    std::set<std::string> seen_;          // robots all of whose frames were read since the verdict
+    std::map<std::string, Text> unread_;  // why they were not, at the last look
+};
+
 // What became of the permissions, into the record; frames that nobody may run in go back.
 void settle(RunRecord& run, const std::map<std::string, RobotLink*>& robots,
-            const std::map<std::string, RobotRelease>& ended, const Text& text, const EventSink& record) {
+            const std::map<std::string, RobotRelease>& ended, WrittenFrames& frames, const Text& text,
+            const EventSink& record) {
     bool unsure = false;
     Text reasons;
     for (const auto& [id, outcome] : ended) {
         for (PushRecord* push : pushes_of(run))
             if (push->robot_id == id && push->status == PushStatus::written) push->release = outcome.release;
-        if (outcome.release == Release::taken) continue;
+        if (outcome.release == Release::taken) {
+            if (const Text off = frames.differing_or_unseen(id); !off.empty())
+                frames.raise(id, Text("robot {}: its application runs, and {}", id, off), record);
+            continue;
+        }
         unsure = unsure || outcome.release == Release::given;
         reasons = joined(reasons, "; ", Text("robot {}: {}", id, outcome.text));
     }
     if (reasons.empty()) {
+        if (frames.wrong()) return;
         run.status = RunStatus::ok;
         run.message = text;
         return;
@@ -72,17 +124,35 @@ void release_run(RunRecord& run, const std::map<std::string, RobotLink*>& robots
             EventKind::alarm, id,
             Text("did not acknowledge \"{}\": {}", to_string(PartVerdict::corrected), told.error().text()));
     }
-    if (acknowledged) return settle(run, robots, await_release(pushed, hold, record), text, record);
+    WrittenFrames frames(run, robots);
+    bool stand = acknowledged;
+    for (const auto& [id, robot] : pushed) {
+        if (!acknowledged) break;
+        const Text off = frames.differing(id);
+        if (off.empty()) continue;
+        stand = false;
+        frames.raise(id, Text("robot {}: {}", id, off), record);
+    }
+    if (stand) {
+        HoldOptions watched = hold;
+        watched.frame_changed = [&](const std::string& id) {
+            const Text off = frames.differing(id);
+            if (!off.empty()) frames.raise(id, Text("robot {}: {}", id, off), record);
+            return off;
+        };
+        const auto ended = await_release(pushed, watched, record);
+        return settle(run, robots, ended, frames, text, record);
+    }
     // A part is not corrected with some of its robots.
+    if (!acknowledged) run.message = "alarm: a robot did not acknowledge the corrected frames";
     run.status = RunStatus::alarm;
-    run.message = "alarm: a robot did not acknowledge the corrected frames";
     std::map<std::string, RobotRelease> ended;
     for (const auto& [id, robot] : robots) {
         const RobotRelease back = take_back(*robot, PartVerdict::failed, run.message, true);
         (void)record(back.release == Release::taken ? EventKind::push : EventKind::alarm, id, back.text);
         if (pushed.count(id)) ended[id] = back;
     }
-    settle(run, robots, ended, text, record);
+    settle(run, robots, ended, frames, text, record);
 }
 
 Expected<void> record_outcome(RunRecord& run, const std::function<Expected<void>()>& store) {

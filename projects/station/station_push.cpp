@@ -113,6 +113,18 @@ void Station::Impl::take_frames_back(Job& job) {
     confirm_all(job, PartVerdict::failed);
 }
 
+// Spots whose measure the others contradict took no part in the correction: whoever reads the verdict is told.
+static Text with_left_out(const RunRecord& run, const Text& verdict) {
+    Text spots;
+    for (const RegionRecord& region : run.regions) {
+        if (!region.correction) continue;
+        for (const SpotResidual& spot : region.correction->spots)
+            if (!spot.used)
+                spots = joined(spots, ", ", Text("{} ({:.2f} mm)", spot.id, spot.residual_mm.norm()));
+    }
+    return spots.empty() ? verdict : Text("{}; left out, contradicting the others: {}", verdict, spots);
+}
+
 void Station::Impl::push_all(Job& job, std::vector<std::optional<GatePass>>& passes) {
     if (!write_all(job, passes)) return take_frames_back(job);
     job.run.status = RunStatus::pushed;
@@ -126,7 +138,8 @@ void Station::Impl::push_all(Job& job, std::vector<std::optional<GatePass>>& pas
     const HoldOptions hold{job.options.hold, job.options.cancel, job.options.part_over,
                            [&](const Text& text) { job.progress(text); }};
     release_run(job.run, links(job.started_robots),
-                Text("regions corrected and pushed: {}", job.run.regions.size()), hold, sink(job));
+                with_left_out(job.run, Text("regions corrected and pushed: {}", job.run.regions.size())),
+                hold, sink(job));
 }
 
 Text Station::Impl::verdict(const RunRecord& run) {
@@ -134,8 +147,9 @@ Text Station::Impl::verdict(const RunRecord& run) {
     switch (run.status) {
         case RunStatus::ok:
             if (regions == 0) return "measured; there is no region to correct";
-            return run.push ? Text("regions corrected and pushed: {}", regions)
-                            : Text("regions corrected, nothing pushed (dry run): {}", regions);
+            return with_left_out(run, run.push
+                                          ? Text("regions corrected and pushed: {}", regions)
+                                          : Text("regions corrected, nothing pushed (dry run): {}", regions));
         case RunStatus::pushed:
             return Text(
                 "regions corrected and pushed: {}; whether the application began is not "

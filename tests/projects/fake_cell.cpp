@@ -120,6 +120,11 @@ Expected<TriggerEvent> FakeRobot::wait_trigger(std::chrono::milliseconds) {
 }
 
 Expected<Pose> FakeRobot::read_frame(const std::string& name) {
+    if (!cell_.verdicts.empty() && cell_.verdicts.back() == PartVerdict::corrected) {
+        if (cell_.frames_unread_after_verdict) return device_error("the controller does not say");
+        const auto kept = cell_.frames_after_verdict.find(name);
+        if (kept != cell_.frames_after_verdict.end()) return kept->second;
+    }
     const auto it = cell_.frames.find(name);
     if (it == cell_.frames.end()) return device_error("there is no frame " + name);
     return it->second;

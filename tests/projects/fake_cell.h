@@ -43,6 +43,9 @@ struct FakeCell {
     RobotMode mode = RobotMode::external;
     std::string write_spoils, write_fails;  // frame names
     std::map<std::string, Pose> frames;
+    // What reading answers instead from the verdict on: the controller kept another one than it had shown.
+    std::map<std::string, Pose> frames_after_verdict;
+    bool frames_unread_after_verdict = false;
     int writes = 0;
     std::vector<PartVerdict> verdicts;         // as confirmed
     std::optional<PartVerdict> deaf_to;        // does not acknowledge this one

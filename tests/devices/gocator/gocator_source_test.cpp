@@ -114,6 +114,29 @@ TEST_F(Gocator, SoftwareTriggerCarriesItsSpotAndTheProfileOfTheCell) {
     EXPECT_EQ(sensor->latest()->sequence, 2u);
 }
 
+// Another sensor's data port, by a wrong setting.
+TEST_F(Gocator, DataOfAnotherSensorAreNotTaken) {
+    auto other = SimulatedCell::open({{"optics", {{"width", 640}, {"height", 512}}}, {"buffers", 64}});
+    ASSERT_TRUE(other);
+    auto second = ServedGocator::open(
+        *other, {{"control_port", 0}, {"data_port", 0}, {"ascii_port", 0}, {"serial", 777}});
+    ASSERT_TRUE(second) << second.error().sentence();
+    (*other)->move_to(moves[0].trigger);
+    auto its_own = open_gocator_sensor({{"address", "127.0.0.1"},
+                                        {"control_port", (*second)->control_port()},
+                                        {"data_port", (*second)->data_port()},
+                                        {"timeout_ms", 500}},
+                                       session);
+    ASSERT_TRUE(its_own && (*its_own)->start());
+    auto sensor = try_open({{"data_port", (*second)->data_port()}});
+    ASSERT_TRUE(sensor) << sensor.error().sentence();
+    ASSERT_TRUE((*sensor)->start());
+    ASSERT_TRUE((*its_own)->trigger("S1"));
+    const auto frame = (*sensor)->wait_next(3s);
+    ASSERT_FALSE(frame);
+    EXPECT_THAT(frame.error().sentence(), HasSubstr("of sensor 777, connected is 12345"));
+}
+
 TEST_F(Gocator, RobotFiresTheDigitalInput) {
     auto sensor = open({{"hardware_trigger", true}});
     EXPECT_FALSE(sensor->trigger("S1"));

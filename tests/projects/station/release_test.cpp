@@ -133,6 +133,67 @@ TEST_F(Releasing, AnApplicationThatNeedsTheLinkIsWaitedForToItsEnd) {
     EXPECT_EQ(looks, 30);
 }
 
+// A controller that keeps what was written aside until the verdict, and then sets one frame only.
+TEST_F(Releasing, AFrameThatTheVerdictDidNotSetIsAnAlarm) {
+    for (const bool application : {false, true}) {
+        cell->application = application;
+        make();
+        const Region& second = cell->project.regions[1];
+        cell->frames_after_verdict[second.frame_name] = second.base_from_frame;
+        const RunRecord record = run();
+        EXPECT_EQ(record.status, RunStatus::alarm);
+        EXPECT_THAT(record.message, HasSubstr(second.frame_name));
+        EXPECT_THAT(record.message, HasSubstr("not the one that was written"));
+        EXPECT_THAT(releases(record), Each(application ? Release::taken : Release::withdrawn));
+        if (!application) {
+            EXPECT_TRUE(frames_old());
+            EXPECT_EQ(cell->permission, Permission::none);
+        }
+        cell->frames_after_verdict.clear();
+    }
+}
+
+TEST_F(Releasing, AFrameThatIsChangedWhileTheApplicationIsWaitedForTakesThePermissionBack) {
+    cell->application = false;
+    options.hold = milliseconds(5000);
+    const std::string name = cell->project.regions[0].frame_name;
+    int looks = 0;
+    cell->on_permission = [&] {
+        if (++looks == 3) cell->frames[name].translation().x() += 0.2;
+    };
+    const auto begun = Clock::now();
+    const RunRecord record = run();
+    EXPECT_LT(Clock::now() - begun, options.hold);
+    EXPECT_EQ(record.status, RunStatus::alarm);
+    EXPECT_THAT(record.message, HasSubstr(name));
+    EXPECT_THAT(releases(record), Each(Release::withdrawn));
+    EXPECT_TRUE(frames_old());
+    EXPECT_EQ(cell->permission, Permission::none);
+}
+
+TEST_F(Releasing, AFrameThatIsChangedAsItIsTakenIsAnAlarm) {
+    cell->application = false;
+    const std::string name = cell->project.regions[0].frame_name;
+    int looks = 0;
+    cell->on_permission = [&] {
+        if (++looks != 3) return;
+        cell->frames[name].translation().x() += 0.2;
+        cell->permission = Permission::taken;
+    };
+    const RunRecord record = run();
+    EXPECT_EQ(record.status, RunStatus::alarm);
+    EXPECT_THAT(record.message, HasSubstr("its application runs"));
+    EXPECT_THAT(record.message, HasSubstr(name));
+    EXPECT_THAT(releases(record), Each(Release::taken));
+}
+
+TEST_F(Releasing, FramesThatCannotBeReadFromTheVerdictOnAreNotCalledCorrected) {
+    cell->frames_unread_after_verdict = true;
+    const RunRecord record = run();
+    EXPECT_EQ(record.status, RunStatus::alarm);
+    EXPECT_THAT(record.message, HasSubstr("cannot be read"));
+}
+
 TEST_F(Releasing, CancelledWhileWaitedFor) {
     cell->application = false;
     options.hold = kHoldForEver;

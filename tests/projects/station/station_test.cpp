@@ -351,6 +351,7 @@ TEST_F(StationRun, WrongSpotIsFoundAndLeftOut) {
         if (!spot.used) out.push_back(spot.id);
     EXPECT_THAT(out, testing::ElementsAre("S5"));
     EXPECT_EQ(record.status, RunStatus::ok) << record.message;
+    EXPECT_THAT(record.message, HasSubstr("left out, contradicting the others: S5"));
 }
 
 TEST_F(StationRun, ProgressIsTold) {

@@ -146,8 +146,7 @@ Open open_directions(const Eigen::MatrixXd& seen) {
 
 std::vector<Text> next_passes(const Data& data, const State& state, const Variances& variances,
                               const Eigen::Vector2d& working_point, double enough_mm) {
-    constexpr double kStraight = 1e-6;  // 1/mm, curvature of an edge that is added
-    constexpr double kBetter = 0.98;    // of the best variance so far, below which a pass is the better one
+    constexpr double kBetter = 0.98;  // of the best variance so far, below which a pass is the better one
     std::vector<Text> words;
     if (std::none_of(data.sights.begin(), data.sights.end(), [](const Sight& s) { return s.used; }))
         return words;  // no pass is there to be taken again otherwise
@@ -165,7 +164,7 @@ std::vector<Text> next_passes(const Data& data, const State& state, const Varian
             Data tried = with;
             State there = at;
             add_pass(tried, there, c.change);
-            v.curvature.resize(there.edges.size(), kStraight);
+            v.curvature.resize(there.edges.size(), kStraightEdge);
             const Blocks blocks = linearised(tried, v, there);
             if (blocks.ss.size() == 0) continue;
             const Eigen::MatrixXd view = view_of(there, working_point, blocks.wanted);

@@ -15,6 +15,9 @@
 
 namespace seamwright::on_part {
 
+// Curvature of an edge that counts as straight, 1/mm.
+inline constexpr double kStraightEdge = 1e-6;
+
 struct EdgeCurve {
     Eigen::Vector3d origin = Eigen::Vector3d::Zero();
     Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();

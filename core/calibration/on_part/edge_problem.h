@@ -17,6 +17,7 @@ struct Sight {
     Eigen::Vector2d point = Eigen::Vector2d::Zero();
     Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
     bool used = true;
+    bool beyond = false;  // not used: at the latency found its pose lies beyond its pass
 };
 
 struct Data {

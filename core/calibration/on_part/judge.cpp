@@ -42,6 +42,7 @@ PoseResidual residual_of(const Refined& r, const Names& names, std::size_t pass,
         const Sight& s = given.sights[i];
         if (s.pass != pass) continue;
         const bool used = r.data.sights[i].used;
+        if (!used && r.data.sights[i].beyond) continue;
         if (!used && !r.wrong_passes[pass] && !one.excluded) {
             wrong += r.data.motions[pass].inside(s.time_s - r.state.latency_s);
             continue;
@@ -168,6 +169,13 @@ Text left_out_sentence(OnPartResult& result, const Refined& r) {
         result.notices.emplace_back(Text("passes left out because the others contradict them: {}", passes));
         return Text("passes had to be left out: {}", passes);
     }
+    const auto beyond = std::count_if(r.data.sights.begin(), r.data.sights.end(),
+                                      [](const Sight& s) { return !s.used && s.beyond; });
+    if (beyond > 0)
+        result.notices.emplace_back(Text(
+            "{} profiles at the ends of their passes took no part: with this latency their poses lie beyond "
+            "what was recorded",
+            beyond));
     if (profiles > 0) result.notices.emplace_back(Text("{} wrong profiles were left out", profiles));
     return profiles * 5 > all ? Text("{} of {} profiles had to be left out", profiles, profiles + all)
                               : Text();
@@ -280,10 +288,11 @@ OnPartResult judge(const Refined& r, const Data& given, const Names& names, cons
     result.status = OnPartStatus::ok;
     result.flange_from_sensor = answer;
     result.covariance = covariance.topLeftCorner<6, 6>();
-    result.latency_s = given.latency_free ? r.state.latency_s + r.estimate.step(6) : given.latency_s;
-    result.latency_known = !open.latency;
-    result.latency_sigma_s = given.latency_free && !open.latency ? std::sqrt(covariance(6, 6)) : 0;
-    if (open.latency)
+    result.latency_s = r.data.latency_free ? r.state.latency_s + r.estimate.step(6) : given.latency_s;
+    result.latency_known = !open.latency && !r.idle_latency;
+    result.latency_sigma_s = r.data.latency_free && !open.latency ? std::sqrt(covariance(6, 6)) : 0;
+    if (r.idle_latency) result.open.emplace_back("the latency is not determined");
+    if (!result.latency_known)
         result.notices.emplace_back(
             "the latency is not determined; nothing else depends on it in these passes");
     state_parameters(result, given.latency_free);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/calibration/numbers.h"
+#include "core/calibration/on_part/idle_latency.h"
 #include "core/calibration/on_part/judge.h"
 #include "core/calibration/on_part/start.h"
 #include "core/calibration/pose_set.h"
@@ -181,6 +182,11 @@ std::optional<Found> find(const Data& data, const std::vector<State>& begun, con
         others.push_back(found.refined.state);
         found.refined = std::move(better);
     }
+    if (Refined real = without_idle_latency(data, found.refined, options.robot);
+        real.data.latency_free != data.latency_free || real.cost != found.refined.cost) {
+        found.refined = std::move(real);
+        found.rivals = rivals_of(found.refined, others);
+    }
     return found;
 }
 
@@ -204,7 +210,7 @@ std::optional<OnPartResult> after_bump(const Data& data, const Names& names, con
     } else {
         const Refined both = refine(data, old, options.robot);
         if (!both.solved) return std::nullopt;
-        result = judge(both, data, names, {}, options);
+        result = judge(without_idle_latency(data, both, options.robot), data, names, {}, options);
     }
     result.bump = test;
     if (result.status == OnPartStatus::ok) {

@@ -85,7 +85,7 @@ bool leave_out_profiles(Data& data, const Blocks& blocks, double at_least) {
 
 void drop_beyond_ends(Data& data, double latency_s) {
     for (Sight& s : data.sights)
-        if (s.used && !data.motions[s.pass].inside(s.time_s - latency_s)) s.used = false;
+        if (s.used && !data.motions[s.pass].inside(s.time_s - latency_s)) s.used = false, s.beyond = true;
 }
 
 void drop_passes(Data& data, const std::vector<bool>& which) {
@@ -115,7 +115,7 @@ void robustly(Data& data, State& state, const Variances& guess, std::vector<bool
 }
 
 // Solved at variances that fit, three times over.
-bool settle(Refined& r, const Given& how) {
+bool settle(Refined& r, const Given& how, bool straight) {
     const double floor = kLeastNoise_mm / mean_sigma(r.data);
     for (int round = 0; round < 4; ++round) {
         if (!std::isfinite(r.cost = solve_state(r.data, r.variances, {}, r.state))) return false;
@@ -134,6 +134,7 @@ bool settle(Refined& r, const Given& how) {
         const Variances before = r.variances;
         r.variances = estimate(blocks, r.data, r.state, before, given).variances;
         r.variances.white = std::max(r.variances.white, floor);
+        if (straight) r.variances.curvature = before.curvature;
         if (round > 1 && std::abs(r.variances.white / before.white - 1) < kWhiteSettled &&
             r.variances.pass_mm == before.pass_mm && r.variances.curvature == before.curvature)
             break;
@@ -173,11 +174,13 @@ std::optional<std::size_t> contradicting(const Refined& r, const Given& how) {
 
 }  // namespace
 
-Refined refine(const Data& data, const State& start, const std::optional<RobotRepeatability>& robot) {
+Refined refine(const Data& data, const State& start, const std::optional<RobotRepeatability>& robot,
+               bool straight) {
     Refined r;
     r.data = data;
     r.state = start;
     r.variances = first_guess(data.edges);
+    if (straight) r.variances.curvature.assign(data.edges, kStraightEdge);
     r.wrong_passes.assign(data.motions.size(), false);
     robustly(r.data, r.state, r.variances, r.wrong_passes);
     Given how;
@@ -198,7 +201,7 @@ Refined refine(const Data& data, const State& start, const std::optional<RobotRe
             if (blocks.ss.size() == 0) return r;
             leave_out_profiles(r.data, blocks, 5 * kWrongProfile * kLeastNoise_mm / mean_sigma(r.data));
         }
-        if (!settle(r, how)) return r;
+        if (!settle(r, how, straight)) return r;
         if (static_cast<double>(used_of(r.data)) < kKept * static_cast<double>(used_of(data))) return r;
         r.working_point = mean_point(r.data);
         const auto wrong = left_out < most ? contradicting(r, how) : std::nullopt;

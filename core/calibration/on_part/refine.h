@@ -17,10 +17,13 @@ struct Refined {
     Eigen::Vector2d working_point = Eigen::Vector2d::Zero();
     std::vector<bool> wrong_passes;
     bool solved = false;
+    bool idle_latency = false;  // it was free, nothing shows it, and it is held
 };
 
 // `robot`: q is given. Passes of which the others are contradicted are left out whole, a quarter of them at most.
-Refined refine(const Data& data, const State& start, const std::optional<RobotRepeatability>& robot);
+// `straight`: the edges are held so while it is solved; the estimate is the mean over their likely curvatures all the same.
+Refined refine(const Data& data, const State& start, const std::optional<RobotRepeatability>& robot,
+               bool straight = false);
 // Another start on the same profiles at the same variances: its state and cost.
 struct Rival {
     State state;

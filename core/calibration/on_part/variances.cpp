@@ -12,7 +12,7 @@ namespace seamwright::on_part {
 namespace {
 
 constexpr std::array kPass_mm = {0.002, 0.005, 0.01, 0.02, 0.035, 0.06, 0.1, 0.2, 0.4, 0.8};
-constexpr std::array kCurvature = {1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2};
+constexpr std::array kCurvature = {kStraightEdge, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2};
 constexpr double kUnseen = 1e-6;  // information of a coefficient that no profile sees: sigma 1 m
 constexpr double kLoose = 1e-6;   // of the precision: q is a thousand times as large
 constexpr double kRad_per_mm = 1.0 / kPassLever_mm;
@@ -291,6 +291,7 @@ Estimate at_variances(const Blocks& blocks, const Data& data, const State& state
     e.gradient = answer.gradient;
     e.rr = answer.rr;
     e.edges = answer.edges;
+    e.minus2 = answer.minus2;
     return e;
 }
 

@@ -25,6 +25,7 @@ struct Estimate {
     Eigen::VectorXd gradient;      // by the data alone
     std::vector<double> straight;  // by edge: probability of the straight one
     double rr = 0;                 // Q at the likeliest
+    double minus2 = 0;             // of at_variances() alone: -2 log of the restricted likelihood
 };
 
 struct Given {

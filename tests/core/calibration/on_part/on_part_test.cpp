@@ -381,5 +381,26 @@ TEST(OnPart, PassesThatShareNoEdgeAreRefusedWithTheCause) {
     }
 }
 
+// A straight edge followed along itself says nothing of the latency, however its noise falls.
+TEST(OnPart, ALatencyThatNothingShowsIsNotStated) {
+    int ok = 0, known = 0;
+    for (unsigned seed = 1; seed <= 8; ++seed) {
+        const auto r = calibrate_on_part(rigid_passes(seed, 10, 1, kRigidMounting, 0.004));
+        ASSERT_TRUE(r);
+        ok += r->status == OnPartStatus::ok;
+        if (r->status != OnPartStatus::ok) continue;
+        known += r->latency_known;
+        if (r->latency_known) {  // hardly, and then it says so
+            EXPECT_GT(r->latency_sigma_s, 0.6 * kOnPartOpen_s) << seed;
+            EXPECT_LT(std::abs(r->latency_s - 0.004), 2.6 * r->latency_sigma_s) << seed;
+        }
+        EXPECT_LT(working_mm(*r, kRigidMounting), 4 * r->working_sigma_mm) << seed;
+        for (const Text& notice : r->notices)
+            EXPECT_THAT(notice.english(), testing::Not(HasSubstr("wrong profiles"))) << seed;
+    }
+    EXPECT_GT(ok, 0);
+    EXPECT_LE(2 * known, ok);
+}
+
 }  // namespace
 }  // namespace seamwright

@@ -70,6 +70,7 @@ Expected<void> check_name(const std::string& name, const char* what, const Text&
 // What the moves carry: the load of a tool that the controller has, or numbers.
 struct Load {
     std::string tool;
+    bool stated = false;
     double mass_kg = 0.001;
     Eigen::Vector3d centre_mm{0, 0, 0.001}, inertia_kgm2{0, 0, 0};
 };
@@ -90,6 +91,7 @@ Expected<Load> load_from(const nlohmann::json& settings) {
         }
     });
     if (f.failed()) return tl::unexpected(f.error());
+    load.stated = numbers || !load.tool.empty();
     if (!load.tool.empty() && numbers)
         return input_error("the load is that of a tool or given in numbers", "settings",
                            "give \"tool\" or \"load\"");
@@ -106,8 +108,10 @@ std::string load_lines(const Load& load) {
         "    ! The flange as tool, and what hangs on it{}\n    PERS tooldata "
         "swTool:=[TRUE,[[0,0,0],[1,0,0,0]],\n        "
         "[{:.3f},[{:.3f},{:.3f},{:.3f}],[1,0,0,0],{:.5f},{:.5f},{:.5f}]];\n",
-        load.tool.empty() ? std::string() : ": see SW_Load", load.mass_kg, c.x(), c.y(), c.z(), i.x(), i.y(),
-        i.z());
+        !load.stated        ? ": not stated, give the robot's setting \"tool\" or \"load\""
+        : load.tool.empty() ? ""
+                            : ": see SW_Load",
+        load.mass_kg, c.x(), c.y(), c.z(), i.x(), i.y(), i.z());
 }
 
 Expected<void> check_pose(const Pose& pose, const Text& where) {
@@ -227,7 +231,11 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
         "    PROC SW_Spots()\n{}    ENDPROC\nENDMODULE\n",
         plain(request.project), program_signature(request.moves), plain(request.part_type),
         request.moves.size(), names, load_lines(load), objects, targets,
-        load.tool.empty() ? "" : fmt::format("        swTool.tload:={}.tload;\n", load.tool), passes);
+        !load.stated
+            ? "        TPWrite \"Seamwright: the load is not stated, the moves run as without one\";\n"
+        : load.tool.empty() ? std::string()
+                            : fmt::format("        swTool.tload:={}.tload;\n", load.tool),
+        passes);
     return std::vector<ProgramFile>{
         {"SeamwrightServer.mod",
          filled(resources::SeamwrightServer_mod, {{"ADDRESS", address}, {"PORT", std::to_string(port)}})},

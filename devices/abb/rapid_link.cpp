@@ -254,6 +254,7 @@ class AbbRapidLink final : public RobotLink {
     }
 
     // The next whole message until `until`.
+    // A message that has begun by then is waited for as long as an answer is: a network may cut it anywhere.
     Expected<Message> receive(Clock::time_point until) {
         char buffer[4 * abb::kMessageBytes];
         for (;;) {
@@ -261,15 +262,18 @@ class AbbRapidLink final : public RobotLink {
                 auto message =
                     abb::parse_message(std::string_view(received_).substr(0, abb::kMessageBytes), where_);
                 received_.erase(0, abb::kMessageBytes);
+                begun_ = Clock::now();
                 return message;
             }
-            const auto left =
-                std::chrono::duration_cast<Milliseconds>(until - Clock::now()) + Milliseconds(1);
-            SEAM_TRY(auto got, connection_->receive_some(std::as_writable_bytes(std::span(buffer)),
-                                                         std::max(left, Milliseconds(1))));
-            received_.append(buffer, got);
-            if (received_.size() >= abb::kMessageBytes) continue;
-            if (Clock::now() >= until)
+            const auto end = received_.empty() ? until : std::max(until, begun_ + settings_.timeout);
+            const auto left = std::chrono::duration_cast<Milliseconds>(end - Clock::now()) + Milliseconds(1);
+            const auto got = connection_->receive_some(std::as_writable_bytes(std::span(buffer)),
+                                                       std::max(left, Milliseconds(1)));
+            if (!got && (received_.empty() || !is_silence(got.error()))) return tl::unexpected(got.error());
+            if (got && received_.empty()) begun_ = Clock::now();
+            if (got) received_.append(buffer, *got);
+            if (!received_.empty() && received_.size() < abb::kMessageBytes &&
+                Clock::now() >= std::max(until, begun_ + settings_.timeout))
                 return device_error(ErrorCode::silence, Text("{}: half a message came", kNoAnswer), where_);
         }
     }
@@ -375,6 +379,7 @@ class AbbRapidLink final : public RobotLink {
     const std::string where_;
     std::optional<TcpConnection> connection_;
     std::string received_;
+    Clock::time_point begun_;  // when the message at the front of it began to come
     std::deque<StartSignal> starts_;
     std::deque<TriggerEvent> triggers_;
     bool ended_ = false;

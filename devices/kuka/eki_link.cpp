@@ -256,23 +256,28 @@ class EkiLink final : public RobotLink {
         }
     }
 
-    // The next telegram. Silence in the middle of one breaks the stream; between two it does not.
+    // The next telegram. Silence in the middle of one breaks the stream; between two it does not. One that has begun is waited
+    // for as long as an answer is: a network may cut it anywhere.
     Expected<EkiTelegram> receive(Clock::time_point until) {
         std::string document;
         while (!splitter_.next(document)) {
             std::array<char, 4096> buffer;
-            const auto got =
-                connection_->receive_some(std::as_writable_bytes(std::span(buffer)), left(until));
+            const bool middle = splitter_.in_the_middle();
+            const auto end = middle ? std::max(until, begun_ + timeout_) : until;
+            const auto got = connection_->receive_some(std::as_writable_bytes(std::span(buffer)), left(end));
             if (!got) {
                 if (!is_silence(got.error())) return fail(got.error());
-                if (splitter_.in_the_middle())
+                if (middle && Clock::now() < end) continue;
+                if (middle)
                     return fail({ErrorKind::device, Text("{}: a telegram broke off in the middle", kNoAnswer),
                                  where_, "check the connection to the controller", ErrorCode::silence});
                 quiet_ns_ = host_now_ns();
                 return tl::unexpected(got.error());
             }
+            if (!middle) begun_ = Clock::now();
             if (auto added = splitter_.add({buffer.data(), *got}); !added) return fail(added.error());
         }
+        begun_ = Clock::now();
         auto telegram = parse_eki_telegram(document);
         if (!telegram) return fail(telegram.error());
         return telegram;
@@ -372,6 +377,7 @@ class EkiLink final : public RobotLink {
     std::vector<Newcomer> newcomers_;
     std::optional<TcpConnection> connection_;  // has said hello
     EkiSplitter splitter_{"Robot"};
+    Clock::time_point begun_;  // when what is in the splitter began to come
     EkiTelegram hello_;
     SameRobot robot_;
     bool measuring_ = false;     // started on this connection

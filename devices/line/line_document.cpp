@@ -49,7 +49,7 @@ QoS 1, JSON, topics after Sparkplug's pattern. GROUP and NODE are settings; '/',
 | `seamwright/GROUP/NDATA/NODE` | yes | `{"version":1,"utc","part","part_type","paint","part_number","part_name","run","result","alarm","seconds","text","regions":[{"id","passed","refusal","shift_mm":[x,y,z],"shift_abc_deg":[a,b,c],"sigma_mm":[x,y,z],"sigma_abc_deg":[a,b,c]}]}`; shifts are null where nothing was solved |
 | `seamwright/GROUP/NCMD/NODE` | no | to the station: `{"id":"7","start":true,"part_type":1,"paint":3,"part_number":815,"part_name":"CAR-0815"}` |
 
-A command's "id" is another one each time: the same one again is a repetition and does nothing. Kept (retained) commands are not
+A command's "id" is another one each time: one of the last thousand again is a repetition and does nothing. Kept (retained) commands are not
 obeyed. "start": true calls for a part where the setting "start" is "line", false gives it up; without "start" the part is
 announced for the robot's next call, and for that one alone. Once the robot has called a part by the name that the line had
 announced, another name is another part: what was announced is not taken for it. Results wait while the broker is away, as many as the setting

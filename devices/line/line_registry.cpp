@@ -62,7 +62,9 @@ const std::vector<LineCode>& line_alarms() {
         {24, "cancelled", "the last part was cancelled"},
         {30, "call_not_followed", "the station could not follow a start in call_timeout_ms"},
         {31, "call_too_old", "a call may be older than --start-expiry, or a newer one came; call again"},
-        {32, "part_type_unknown", "the part's type is none of those that the station is set up for"},
+        {32, "part_type_unknown",
+         "the part's type is none of those that the station is set up for; where it is set up for none, "
+         "part_type is passed over"},
         {33, "start_not_dropped", "start is still 1, drop_timeout_ms after done"},
         {34, "line_silent", "line_heartbeat stands still"},
     };

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <deque>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include "devices/backoff.h"
@@ -313,8 +314,13 @@ class Mqtt : public LineLink {
             return;
         }
         const std::lock_guard lock(mutex_);
-        if (command->id == last_id_) return;
-        last_id_ = command->id;
+        constexpr std::size_t kIdsKept = 1000;
+        if (!obeyed_.insert(command->id).second) return;
+        ids_.push_back(command->id);
+        if (ids_.size() > kIdsKept) {
+            obeyed_.erase(ids_.front());
+            ids_.pop_front();
+        }
         if (!command->start) {
             announced_ = command->part;
             return;
@@ -396,7 +402,8 @@ class Mqtt : public LineLink {
     std::deque<std::string> results_;
     std::uint64_t first_ = 0;  // number of results_.front()
     std::uint64_t lost_ = 0;
-    std::string last_id_;
+    std::set<std::string> obeyed_;  // ids of commands that came; the same again is a repetition
+    std::deque<std::string> ids_;   // of those, in the order in which they came
     std::optional<LineCall> call_;
     LinePart announced_;
 

@@ -307,6 +307,14 @@ void RapidRobot::add_places(Natives& n) {
             at.parts[0].parts[i].number = as_num(at.parts[0].parts[i].number + c.number(names[i]));
         return at;
     };
+    n["distance"] = [](Task& t, const Call& c) {
+        double squares = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double d = c["point1"].parts[i].number - c["point2"].parts[i].number;
+            squares += d * d;
+        }
+        return make_number(t, std::sqrt(squares));
+    };
     n["posemult"] = [](Task&, const Call& c) {
         Value product = c["pose1"];
         store_pose(product, pose_from(c["pose1"]) * pose_from(c["pose2"]));

@@ -110,6 +110,7 @@ FUNC robtarget CRobT(\string TaskName\PERS tooldata Tool\PERS wobjdata WObj);
 FUNC robtarget Offs(robtarget Point,num XOffset,num YOffset,num ZOffset);
 FUNC string GetSysInfo(\switch SerialNo|switch SWVersion|switch RobotType|switch CtrlId|switch LanIp|switch CtrlLang
     |switch SystemName);
+FUNC num Distance(pos Point1,pos Point2);
 FUNC pose PoseMult(pose Pose1,pose Pose2);
 FUNC pose PoseInv(pose Pose1);
 FUNC orient NOrient(orient Rotation);

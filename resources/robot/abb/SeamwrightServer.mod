@@ -218,12 +218,12 @@ MODULE SeamwrightServer
             ELSEIF Known(name,object) THEN
                 SayPose head+" "+name,PoseMult(object.uframe,object.oframe);
             ELSE
-                Say number+" NO READ","there is no work object "+name,"";
+                Say number+" NO READ","there is no fixed work object "+name,"";
             ENDIF
         CASE "WRITE":
             Take_back;
             IF NOT Known(name,object) THEN
-                Say number+" NO WRITE","there is no work object "+name,"";
+                Say number+" NO WRITE","there is no fixed work object "+name,"";
             ELSEIF NOT ReadPose(frame) THEN
                 Say number+" NO WRITE","the pose cannot be read","";
             ELSEIF Staged_index(name)=0 AND staged_count>=32 THEN
@@ -363,10 +363,22 @@ MODULE SeamwrightServer
             SetDataVal staged_name{applied+1}\TaskName:="T_ROB1",object;
             applied:=applied+1;
             applied_name{applied}:=staged_name{applied};
+            GetDataVal applied_name{applied}\TaskName:="T_ROB1",object;
+            IF NOT Same(PoseMult(object.uframe,object.oframe),staged{applied}) THEN
+                SetDataVal applied_name{applied}\TaskName:="T_ROB1",before{applied};
+                applied:=applied-1;
+                RETURN FALSE;
+            ENDIF
         ENDWHILE
         RETURN TRUE;
     ERROR
         RETURN FALSE;
+    ENDFUNC
+
+    LOCAL FUNC bool Same(pose a,pose b)
+        VAR num turned;
+        turned:=Abs(a.rot.q1-b.rot.q1)+Abs(a.rot.q2-b.rot.q2)+Abs(a.rot.q3-b.rot.q3)+Abs(a.rot.q4-b.rot.q4);
+        RETURN Distance(a.trans,b.trans)<0.001 AND turned<0.00001;
     ENDFUNC
 
     LOCAL PROC Undo_applied()
@@ -480,7 +492,8 @@ MODULE SeamwrightServer
     LOCAL FUNC bool Known(string name,INOUT wobjdata object)
         IF name="" RETURN FALSE;
         GetDataVal name\TaskName:="T_ROB1",object;
-        RETURN TRUE;
+        ! One that a robot holds or an axis moves is no frame in the base.
+        RETURN object.robhold=FALSE AND object.ufprog;
     ERROR
         RETURN FALSE;
     ENDFUNC

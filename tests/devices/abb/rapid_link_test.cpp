@@ -277,6 +277,57 @@ TEST(AbbRapidByHand, TheLastMeasuringsEndIsNotTheNewOnes) {
     EXPECT_EQ(end.error().what, "the measuring program has ended");
 }
 
+// Every message in two pieces with a pause between, while the link asks now and then whether the controller is alive.
+TEST(AbbRapidByHand, AMessageThatTheNetworkCutsIsTaken) {
+    constexpr int kTriggers = 15;
+    auto listener = TcpListener::listen("127.0.0.1", 0);
+    ASSERT_TRUE(listener) << listener.error().sentence();
+    std::jthread controller([&] {
+        auto client = listener->accept(Milliseconds(5000));
+        ASSERT_TRUE(client) << client.error().sentence();
+        std::array<char, abb::kMessageBytes> bytes;
+        std::size_t got = 0;
+        int told = 0;
+        auto next = std::chrono::steady_clock::now();
+        const auto say = [&](const abb::Message& message) {
+            const std::string text = abb::message_bytes(message);
+            const auto all = std::as_bytes(std::span(text));
+            EXPECT_TRUE(client->send(all.first(100), Milliseconds(1000)));
+            std::this_thread::sleep_for(Milliseconds(100));
+            EXPECT_TRUE(client->send(all.subspan(100), Milliseconds(1000)));
+        };
+        while (told <= kTriggers) {
+            auto some =
+                client->receive_some(std::as_writable_bytes(std::span(bytes)).subspan(got), Milliseconds(10));
+            if (!some && !is_silence(some.error())) return;
+            if (some) got += *some;
+            if (got == bytes.size()) {
+                got = 0;
+                const auto asked = abb::parse_message(std::string_view(bytes.data(), bytes.size()), "test");
+                ASSERT_TRUE(asked) << asked.error().sentence();
+                say({asked->number, asked->word, {}, {}, {}});
+                if (asked->word == "MEASURE") told = 1;
+            }
+            if (told == 0 || std::chrono::steady_clock::now() < next) continue;
+            next = std::chrono::steady_clock::now() + Milliseconds(70);
+            const std::string number = std::to_string(told++);
+            abb::Message trigger{0, "TRIGGER", {number, number, "S1"}, {}, {}};
+            abb::set_pose_lines(trigger, Pose::Identity());
+            say(trigger);
+        }
+    });
+    DeviceSession session;
+    auto link = open_abb_rapid({{"port", listener->port()}, {"timeout_ms", 2000}}, session);
+    ASSERT_TRUE(link) << link.error().sentence();
+    ASSERT_TRUE((*link)->start_measuring(moves(1)));
+    for (int i = 0; i < kTriggers; ++i) {
+        auto trigger = (*link)->wait_trigger(Milliseconds(30));
+        for (int again = 0; again < 100 && !trigger && is_silence(trigger.error()); ++again)
+            trigger = (*link)->wait_trigger(Milliseconds(30));
+        ASSERT_TRUE(trigger) << i << ": " << trigger.error().sentence();
+    }
+}
+
 TEST(AbbRapidSettings, AreChecked) {
     DeviceSession session;
     const auto unknown = open_abb_rapid({{"prot", 1025}}, session);

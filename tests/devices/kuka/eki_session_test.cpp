@@ -178,5 +178,26 @@ TEST_F(EkiSession, ABrokenOffTelegramEndsTheWaitAndTheMeasuring) {
     EXPECT_THAT(trigger.error().sentence(), HasSubstr("lost while the part was measured"));
 }
 
+// Cut where the wait for it ends, and whole well before an answer would be late.
+TEST_F(EkiSession, ATelegramThatTheNetworkCutsIsTaken) {
+    HandMadeRobot robot(port, "KRC-1");
+    ASSERT_EQ(identity()->serial, "KRC-1");
+    ASSERT_TRUE(link->start_measuring({}));
+    for (int number = 1; number <= 5; ++number) {
+        const std::string name = "S" + std::to_string(number);
+        const std::string whole = write_eki("Robot", {.kind = "trigger", .id = number, .name = name});
+        robot.send(whole.substr(0, whole.size() / 2));
+        std::jthread later([&] {
+            std::this_thread::sleep_for(60ms);
+            robot.send(whole.substr(whole.size() / 2));
+        });
+        auto trigger = link->wait_trigger(20ms);
+        for (int i = 0; i < 20 && !trigger && is_silence(trigger.error()); ++i)
+            trigger = link->wait_trigger(20ms);
+        ASSERT_TRUE(trigger) << trigger.error().sentence();
+        EXPECT_EQ(trigger->spot_id, name);
+    }
+}
+
 }  // namespace
 }  // namespace seamwright

@@ -113,6 +113,8 @@ TEST_F(MqttLine, CommandsCallForParts) {
     link->publish(told_part(2));
     command(R"({"id":"4","start":true})");  // QoS 1 may say it twice
     EXPECT_FALSE(call(300ms));
+    command(R"({"id":"1","start":true,"part_name":"LATE"})");  // late, with others between
+    EXPECT_FALSE(call(300ms));
     command(R"({"id":"5","part_number":9})");
     EXPECT_TRUE(soon([&] { return link->take_announced().number == 9; }));
     EXPECT_EQ(link->take_announced(), LinePart{});  // not the next part too

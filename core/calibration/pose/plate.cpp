@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/acceptance/distributions.h"
 #include "core/calibration/numbers.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/statistics.h"
@@ -26,8 +27,9 @@ constexpr double kMirrorGain = 0.8, kMirrorMisfit_mm2 = 0.25;
 constexpr double kGoodPlate_mm = 0.1, kUsablePlate_mm = 0.5;  // three sigma anywhere on the plate
 constexpr double kNoiseFloor_mm = 0.01;  // of a world point, for what three points can promise
 constexpr double kSmallestOutlier_mm = 0.05;
-constexpr double kLeastRest_mm2 = 1e-12;                           // squares that exact points leave
-constexpr double kSmallestPlate_mm = 2;                            // a smaller one looks like metres
+constexpr double kWrongByChance = 1e-3;   // of a plate whose points are all right: one of them is left out
+constexpr double kLeastRest_mm2 = 1e-12;  // squares that exact points leave
+constexpr double kSmallestPlate_mm = 2;   // a smaller one looks like metres
 constexpr double kLeastSize_mm = 1e-12, kLeastSpread_mm2 = 1e-12;  // guard quotients
 // Sizes a thousand times apart, to twice either way.
 constexpr double kThousandthFrom = 0.0005, kThousandthTo = 0.002, kThousandFrom = 500, kThousandTo = 2000;
@@ -193,7 +195,10 @@ std::string drop_wrong(const std::vector<PlatePoint>& points, Pairs& pairs, Pair
         const double f =
             (fit.squares - best.squares) / 3 / (std::max(best.squares, kLeastRest_mm2) / redundancy);
         const double miss = (pairs.world[suspect] - best.pose * pairs.plate[suspect]).norm();
-        if (f < outlier_limit(redundancy) || miss < kSmallestOutlier_mm) break;
+        // Of four, three fit each other by chance more often than the general limit allows for.
+        const double limit =
+            std::max(outlier_limit(redundancy), f_quantile(3, redundancy, 1 - kWrongByChance / pairs.used()));
+        if (f < limit || miss < kSmallestOutlier_mm) break;
         pairs.use[suspect] = false;
         fit = best;
         report.poses[suspect].used = false;

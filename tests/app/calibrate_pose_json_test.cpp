@@ -132,6 +132,51 @@ TEST(CalibrateJson, HandEyeBothMounts) {
     EXPECT_FALSE(solve_calibration(*find_method("hand-eye"), {{"pairs", json::array()}}, {}).has_value());
 }
 
+json pairs_json(const std::vector<HandEyePair>& pairs) {
+    json list = json::array();
+    for (const HandEyePair& p : pairs) {
+        const json robot = pose_json(p.base_from_flange), camera = pose_json(p.camera_from_target);
+        list.push_back({{"id", p.id},
+                        {"base_from_flange", {{"xyz", robot["xyz"]}, {"abc", robot["abc"]}}},
+                        {"camera_from_target", {{"xyz", camera["xyz"]}, {"abc", camera["abc"]}}}});
+    }
+    return {{"mount", "eye_in_hand"}, {"pairs", list}};
+}
+
+TEST(CalibrateJson, HandEyeNamesTheUnitThatFits) {
+    Random random(12);
+    HandEyeCell cell = any_hand_eye_cell(random);
+    cell.mount = Mount::eye_in_hand;
+    cell.x = make_pose(any_rotation(random), {60, -20, 150});
+    cell.y = make_pose(any_rotation(random), {900, 150, 400});
+    cell.sigma_mm = 0.03;
+    cell.sigma_rad = 2e-4;
+    const json good = pairs_json(hand_eye_pairs(cell, 10, random));
+    const auto cure = [&](const json& data) {
+        const auto r = solve_calibration(*find_method("hand-eye"), data, {});
+        if (!r) return r.error().sentence();
+        EXPECT_FALSE(serves(r->verdict()));
+        return r->report.judgement.cure.english();
+    };
+    const auto times = [&](const char* list, const char* part, double factor) {
+        json data = good;
+        for (json& pair : data["pairs"])
+            for (json& v : pair[list][part]) v = v.get<double>() * factor;
+        return data;
+    };
+    EXPECT_TRUE(serves(solve_calibration(*find_method("hand-eye"), good, {})->verdict()));
+    EXPECT_THAT(cure(times("base_from_flange", "abc", kPi / 180)), HasSubstr("base_from_flange are radians"));
+    EXPECT_THAT(cure(times("camera_from_target", "abc", kPi / 180)),
+                HasSubstr("camera_from_target are radians"));
+    json both = times("base_from_flange", "abc", kPi / 180);
+    for (json& pair : both["pairs"])
+        for (json& v : pair["camera_from_target"]["abc"]) v = v.get<double>() * kPi / 180;
+    EXPECT_THAT(cure(both), HasSubstr("both lists are radians"));
+    EXPECT_THAT(cure(times("camera_from_target", "xyz", 1 / 25.4)),
+                HasSubstr("camera_from_target are inches"));
+    EXPECT_THAT(cure(times("base_from_flange", "xyz", 1 / 25.4)), HasSubstr("base_from_flange are inches"));
+}
+
 TEST(CalibrateJson, PlateStaticAndDrift) {
     Random random(4);
     const Pose truth = make_pose(any_rotation(random), {2000, 300, 500});
@@ -157,6 +202,14 @@ TEST(CalibrateJson, PlateStaticAndDrift) {
     EXPECT_LT(distance_mm(*parse_pose(one->document["world_from_laser"], ""),
                           truth * plate_from_camera * camera_from_laser),
               1e-6);
+    EXPECT_TRUE(one->document["sensors"][0]["sigma"].is_object());
+    json bare = chain;
+    bare["world_from_plate"] = pose_json(truth);
+    const auto unknown = solve_calibration(*find_method("static"), bare, {});
+    ASSERT_TRUE(unknown.has_value());
+    for (const char* key : {"sigma", "covariance", "working_sigma_mm"})
+        EXPECT_TRUE(unknown->document["sensors"][0][key].is_null()) << key;
+    EXPECT_THAT(unknown->document["reason"].get<std::string>(), HasSubstr("unknown"));
     chain["camera_from_laser"] = 3;
     EXPECT_FALSE(solve_calibration(*find_method("static"), chain, {}).has_value());
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/calibration/bundle/bundle_limits.h"
+#include "core/calibration/bundle/bundle_units.h"
 #include "core/calibration/bundle/onto_rays.h"
 #include "core/calibration/camera/camera_costs.h"
 #include "core/calibration/numbers.h"
@@ -25,7 +26,6 @@ constexpr double kUnseen = 1e-300;             // information of a direction tha
 constexpr double kSameFeature_mm = 1e-6;       // apart at most, of one feature's places on the object
 constexpr double kLeastRestSight_px2 = 1e-12;  // squares that exact sights leave, beside a wrong one ..
 constexpr double kLeastRestCamera_px2 = 1e-9;  // .. and beside a wrong camera
-constexpr double kNoiseBelievable = 0.999;     // of chi squared: what the stated noise may leave
 constexpr int kFolds = 10;
 constexpr std::size_t kRefined = 6;
 
@@ -174,6 +174,19 @@ bool named(const std::vector<std::string>& list, const std::string& id) {
     return std::find(list.begin(), list.end(), id) != list.end();
 }
 
+// An object and cameras that are all nearer than a centimetre to where they are counted from are metres.
+Expected<void> check_lengths(const std::vector<PlacedCamera>& cameras,
+                             const std::vector<BundleSight>& sights) {
+    std::vector<Pose> places;
+    bool stand = false;
+    for (const PlacedCamera& c : cameras) {
+        places.push_back(c.world_from_camera.pose);
+        stand |= !places.back().translation().isZero(0);
+    }
+    for (const BundleSight& s : sights) places.push_back(make_pose(Eigen::Matrix3d::Identity(), s.object_mm));
+    return stand ? check_millimetres(places, "cameras and features") : Expected<void>();
+}
+
 Expected<void> check(const std::vector<PlacedCamera>& cameras, const std::vector<BundleSight>& sights,
                      const BundleOptions& options) {
     SEAM_OK(check_cameras(cameras));
@@ -201,6 +214,7 @@ Expected<void> check(const std::vector<PlacedCamera>& cameras, const std::vector
                                "give the better of them");
         known.insert(s.feature);
     }
+    SEAM_OK(check_lengths(cameras, sights));
     for (const std::string& id : options.exclude)
         if (!known.contains(id))
             return input_error(Text("there is no camera and no feature '{}'", id), "exclude");
@@ -328,9 +342,8 @@ Judgement judged(const BundleResult& r, const std::string& against, double redun
     if (!against.empty() && r.sigma_px > kGoodNoise_px)
         return {Verdict::poor, Text("camera '{}' contradicts the others", against),
                 "check its place, or leave it out"};
-    if (options.sigma_px && redundancy > 0 &&
-        squares > chi_squared_quantile(kNoiseBelievable, redundancy) * *options.sigma_px * *options.sigma_px +
-                      of_places)
+    if (options.sigma_px &&
+        contradicts_stated((squares - of_places) / std::pow(*options.sigma_px, 2), redundancy))
         return {Verdict::poor, Text("the features miss by more than the stated noise allows: {}", fit),
                 "check the features' places on the object and where the cameras stand"};
     if (3 * r.worst_mm > kUsableObject_mm || r.sigma_px > kUsableNoise_px)
@@ -381,6 +394,16 @@ void rows_of_cameras(const Bundle& bundle, const BundleOptions& options, BundleR
 
 Expected<BundleResult> locate_object(const std::vector<PlacedCamera>& cameras,
                                      const std::vector<BundleSight>& sights, const BundleOptions& options) {
+    SEAM_TRY(auto found, bundle::locate_as_given(cameras, sights, options));
+    if (!serves(found.report.judgement.verdict))
+        if (Text unit = bundle::other_unit(cameras, sights, options); !unit.empty())
+            found.report.judgement.cure = std::move(unit);
+    return found;
+}
+
+Expected<BundleResult> bundle::locate_as_given(const std::vector<PlacedCamera>& cameras,
+                                               const std::vector<BundleSight>& sights,
+                                               const BundleOptions& options) {
     SEAM_OK(check(cameras, sights, options));
     const Bundle bundle(cameras, sights);
     BundleResult r;

@@ -52,7 +52,9 @@ struct BundleResult {
     CalibrationReport report;           // one row a camera; held out: a tenth of the features at a time
 };
 
-// Error (input): cameras that are none, a sight of no camera or outside its image, weights negative or not finite, the
+// A poor or undetermined answer whose object or cameras fit in metres or inches says so.
+//
+// Error (input): cameras that are none, object and cameras all within 10 mm of their origins (metres), a sight of no camera or outside its image, weights negative or not finite, the
 // same feature at two places of the object, an unknown id excluded. Verdict undetermined: fewer than three features, all
 // on one line, two places that fit equally and no start. Poor: three sigma at a feature above 1 mm, noise above 1.5 px
 // or beyond what was stated, one camera against the others. Usable: above 0.2 mm or 0.5 px, no redundancy.

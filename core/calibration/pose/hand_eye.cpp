@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/calibration/pose/hand_eye_judge.h"
 #include "core/calibration/pose/hand_eye_noise.h"
 #include "core/calibration/pose/hand_eye_solve.h"
 #include "core/calibration/pose/hand_eye_start.h"
@@ -20,8 +21,9 @@ namespace {
 
 using namespace hand_eye;
 
+using Vector12 = Eigen::Matrix<double, 12, 1>;
+
 constexpr double kUndetermined_mm = 20.0, kUndetermined_rad = 0.05;
-constexpr double kGoodHand_mm = 1.0, kGoodHand_deg = 0.3, kUsableHand_mm = 3.0, kUsableHand_deg = 1.0;
 constexpr double kShortestLever_mm = 50.0;  // that angles are weighed by in a start
 // A start is looked for in subsets where some pair is off by so many times the middle one, and more than rounding.
 constexpr double kGrossTimes = 3, kRounding_mm = 1e-9;
@@ -29,6 +31,10 @@ constexpr double kWrongTold = 0.9999;  // of chi squared: a pair beyond contradi
 // Pairs beyond any doubt: their square in robust sigmas, and either distance from the others.
 constexpr double kNoDoubt = 400, kNoDoubt_mm = 0.1, kNoDoubt_rad = 1e-3;
 constexpr std::array kRobustScales{100.0, 30.0, 30.0};  // Geman and McClure, one after the other
+constexpr double kCopy_mm = 1e-6, kCopy_rad = 1e-9;     // pairs nearer to each other than that are copies
+constexpr double kSizeAsked_mm = 30;       // rms beyond which no wrong size of the target is the cause
+constexpr std::size_t kFewestForSize = 4;  // stands
+constexpr double kSizeSettled = 1e-5;
 constexpr double kOtherMountFits = 0.2;  // of the rms: what the other mount must fit better than
 
 // Sum of absolute residuals with angles on the lever of the camera's distance: one number for all closed
@@ -127,6 +133,13 @@ Expected<void> check_input(const std::vector<HandEyePair>& pairs, const std::vec
         else
             kept.push_back(robot[i]);
     }
+    for (size_t i = 0; i < pairs.size(); ++i)
+        for (size_t k = 0; k < i; ++k)
+            if (used[i] && used[k] && distance_mm(robot[i], robot[k]) < kCopy_mm &&
+                angle_rad(robot[i], robot[k]) < kCopy_rad && distance_mm(camera[i], camera[k]) < kCopy_mm &&
+                angle_rad(camera[i], camera[k]) < kCopy_rad)
+                return input_error(Text("'{}' and '{}' are the same pair", ids[k], ids[i]), "pairs",
+                                   "leave the copy out");
     const auto first = first_equal_pose(kept);
     int distinct = 0;
     for (size_t i = 0; i < first.size(); ++i) distinct += first[i] == static_cast<int>(i) ? 1 : 0;
@@ -192,6 +205,58 @@ void state_rms(const Chain& chain, const Pose& x, const Pose& y, HandEyeResult& 
     const double n = static_cast<double>(chain.used_count());
     result.rms_mm = std::sqrt(squares_mm / n);
     result.rms_deg = deg_from_rad(std::sqrt(squares_rad / n));
+}
+
+// The pairs used, those of one stand of the robot as one, seen from its first.
+Chain one_a_stand(const Chain& chain, const std::vector<Pose>& base_from_flange, const Pose& x) {
+    Chain used, stands;
+    std::vector<Pose> flanges;
+    for (size_t i = 0; i < chain.size(); ++i) {
+        if (!chain.used[i]) continue;
+        used.a.push_back(chain.a[i]);
+        used.c.push_back(chain.c[i]);
+        flanges.push_back(base_from_flange[i]);
+    }
+    const auto first = first_equal_pose(flanges);
+    for (size_t i = 0; i < used.size(); ++i) {
+        if (first[i] != static_cast<int>(i)) continue;
+        Vector6 sum = Vector6::Zero();
+        double count = 0;
+        for (size_t k = i; k < used.size(); ++k) {
+            if (first[k] != static_cast<int>(i)) continue;
+            // A_i X C' = A_k X C_k
+            sum += difference(x.inverse() * used.a[i].inverse() * used.a[k] * x * used.c[k], used.c[i]);
+            ++count;
+        }
+        stands.a.push_back(used.a[i]);
+        stands.c.push_back(retract(used.c[i], sum / count));
+        stands.used.push_back(true);
+    }
+    return stands;
+}
+
+// What the target's size wants to be, with all else.
+Weighed with_size(Chain chain, bool robot_outside, const RobotRepeatability& robot, Pose x, Pose y,
+                  Scales scales) {
+    double size = 1;
+    Weighed w;
+    for (int round = 0; round < 4; ++round) {
+        // On the way there the robot may count as unknown: that is quicker, of few pairs by far.
+        w = weigh(chain, robot_outside, {}, x, y, scales, true);
+        if (!std::isfinite(w.size) || !(w.size > 0)) break;
+        size *= w.size;
+        const bool settled = std::abs(w.size - 1) < kSizeSettled;
+        for (Pose& c : chain.c) c.translation() *= w.size;
+        x = w.x;
+        y = w.y;
+        w.size = size;
+        if (settled) break;
+        scales = solve(chain, x, y, scales);
+    }
+    if (!robot.stated()) return w;
+    w = weigh(chain, robot_outside, robot, x, y, scales, true);
+    w.size *= size;
+    return w;
 }
 
 HoldOut verify(const Chain& chain, const Pose& x, const Pose& y, const Scales& scales) {
@@ -331,11 +396,17 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
         const Text mistake =
             likely_mistake(mount, pairs, wanted, std::sqrt(squares / static_cast<double>(pairs.size())));
         if (!mistake.empty()) report.judgement.cure = mistake;
+        result.reversed = !mistake.empty();
         return result;
     }
 
     result.status = HandEyeStatus::ok;
-    const Weighed weighed = weigh(chain, mount == Mount::eye_to_hand, robot, x, y, scales);
+    std::vector<Pose> every_flange;
+    for (const auto& pair : pairs) every_flange.push_back(pair.base_from_flange);
+    const bool outside = mount == Mount::eye_to_hand;
+    const Chain stands = one_a_stand(chain, every_flange, x);
+    if (stands.size() < chain.used_count()) scales = solve(stands, x, y, scales);
+    const Weighed weighed = weigh(stands, outside, robot, x, y, scales);
     x = result.x = weighed.x;
     y = result.y = weighed.y;
     state_rms(chain, x, y, result);
@@ -343,30 +414,33 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
         report.poses[i].rms_mm = residual_mm(chain, i, x, y).norm();
         report.poses[i].deg = deg_from_rad(residual_rad(chain, i, x, y).norm());
     }
-    result.covariance_x = weighed.covariance.topLeftCorner<6, 6>();
-    result.covariance_y = weighed.covariance.bottomRightCorner<6, 6>();
+    Matrix12 covariance = weighed.covariance;
+    report.hold_out = verify(stands, x, y, scales);
+    HandEyeEvidence evidence;
+    evidence.stands = static_cast<int>(stands.size());
+    evidence.robot_stated = robot.stated();
+    for (const Pose& c : stands.c)
+        evidence.reach_mm += c.translation().norm() / static_cast<double>(stands.size());
+    if (stands.size() >= kFewestForSize && result.rms_mm < kSizeAsked_mm) {
+        const Weighed sized = with_size(stands, outside, robot, x, y, scales);
+        result.target_size = sized.size;
+        result.target_size_sigma = std::sqrt(sized.covariance(12, 12));
+        if (size_is_off(result.target_size, result.target_size_sigma)) {
+            Vector12 moved;
+            moved << difference(sized.x, x), difference(sized.y, y);
+            covariance += moved * moved.transpose();
+        }
+    }
+    result.covariance_x = covariance.topLeftCorner<6, 6>();
+    result.covariance_y = covariance.bottomRightCorner<6, 6>();
     add_pose(report, x);
     add_pose(report, y, "target_");
-    state_covariance(report, weighed.covariance);
-    report.hold_out = verify(chain, x, y, scales);
-
-    const double check_mm = std::isnan(report.hold_out.rms_mm) ? result.rms_mm : report.hold_out.rms_mm;
-    const double check_deg = std::isnan(report.hold_out.rms_deg) ? result.rms_deg : report.hold_out.rms_deg;
-    const double sigma_mm = std::sqrt(result.covariance_x.topLeftCorner<3, 3>().diagonal().maxCoeff());
-    const Text fit("poses not used fit to {:.2f} mm and {:.3f} degrees rms", check_mm, check_deg);
-    result.fits = check_mm <= kUsableHand_mm && check_deg <= kUsableHand_deg;
-    if (!result.fits || 3 * sigma_mm > 2 * kUsableHand_mm) {
-        const Text mistake = likely_mistake(mount, pairs, wanted, result.rms_mm);
-        report.judgement = {Verdict::poor, fit,
-                            mistake.empty()
-                                ? Text("check robot poses, the target's size and the camera's intrinsics")
-                                : mistake};
-    } else if (check_mm > kGoodHand_mm || check_deg > kGoodHand_deg || 3 * sigma_mm > kGoodHand_mm || n < 6) {
-        report.judgement = {Verdict::usable,
-                            n < 6 ? Text("only {:.0f} poses, little to check with; {}", n, fit) : fit,
-                            "take more poses with larger rotations, still and well lit"};
-    } else {
-        report.judgement = {Verdict::good, fit, ""};
+    state_covariance(report, covariance);
+    report.judgement = judge_hand_eye(evidence, result);
+    if (report.judgement.verdict == Verdict::poor) {
+        evidence.mistake = likely_mistake(mount, pairs, wanted, result.rms_mm);
+        result.reversed = !evidence.mistake.empty();
+        report.judgement = judge_hand_eye(evidence, result);
     }
     return result;
 }

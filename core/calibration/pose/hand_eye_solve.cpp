@@ -14,14 +14,19 @@ namespace {
 using Vector12 = Eigen::Matrix<double, 12, 1>;
 
 constexpr double kSmallest_mm = 1e-6, kSmallest_rad = 1e-8;  // weights of exact data stay finite
-constexpr double kFloor_mm = 0.02, kFloor_rad = 2e-4;  // no camera and robot are better: for determinability
-constexpr double kOpenInformation = 1e-15;             // of the scaled information: no direction is more open
+constexpr double kOpenInformation = 1e-15;  // of the scaled information: no direction is more open
 // Levenberg and Marquardt; kFailedDamping: the least after a step that was none.
 constexpr double kDampingStart = 1e-6, kDampingDown = 0.1, kDampingUp = 10;
 constexpr double kLeastDamping = 1e-12, kFailedDamping = 1e-9;
 constexpr double kCostSettled = 1e-12;  // relative gain that ends it
 constexpr double kChiSquared3Median = 2.366;
 constexpr double kRatioSettled = 1e-4;  // of the scales' ratio: a smaller change moves nothing
+
+// Both scales of few pairs, from one that counts for millimetres.
+Scales shared(double sigma_mm, double lever_mm) {
+    const double sigma = std::max(sigma_mm, kFloor_mm);
+    return {sigma, sigma / lever_mm};
+}
 
 double cost_of(const Chain& chain, const Pose& x, const Pose& y, const Scales& s, double k) {
     double cost = 0;
@@ -46,6 +51,12 @@ Scales estimated_scales(const Chain& chain, const Pose& x, const Pose& y, const 
         squares_rad += at.residuals.segment<3>(row + 3).squaredNorm();
     }
     const double rows = 3 * static_cast<double>(chain.used_count());
+    if (chain.used_count() < kFewestForScales) {
+        const double lever = shared_lever_mm(chain);
+        return shared(std::sqrt((s.mm * s.mm * squares_mm + std::pow(lever * s.rad, 2) * squares_rad) /
+                                (2 * rows - 12)),
+                      lever);
+    }
     const auto sigma = [&](const Matrix12& own, double squares) {
         return std::sqrt(squares / std::max(1.0, rows - solve_symmetric(mm + rad, own).trace()));
     };
@@ -72,6 +83,14 @@ double largest_sigma(const Matrix12& covariance, Eigen::Index at) {
 
 std::size_t Chain::used_count() const {
     return static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
+}
+
+double shared_lever_mm(const Chain& chain) {
+    constexpr double kOfDistance = 0.4, kLeast_mm = 20;
+    double sum = 0;
+    for (std::size_t i = 0; i < chain.size(); ++i)
+        if (chain.used[i]) sum += chain.c[i].translation().norm();
+    return std::max(kLeast_mm, kOfDistance * sum / static_cast<double>(chain.used_count()));
 }
 
 Eigen::Vector3d residual_mm(const Chain& chain, std::size_t i, const Pose& x, const Pose& y) {
@@ -151,6 +170,13 @@ Scales scales_from_medians(const Chain& chain, const Pose& x, const Pose& y) {
         if (!chain.used[i]) continue;
         t.push_back(residual_mm(chain, i, x, y).squaredNorm());
         r.push_back(residual_rad(chain, i, x, y).squaredNorm());
+    }
+    if (chain.used_count() < kFewestForScales) {
+        // The start fits some pairs exactly: all count.
+        const double lever = shared_lever_mm(chain);
+        double sum = 0;
+        for (std::size_t i = 0; i < t.size(); ++i) sum += t[i] + lever * lever * r[i];
+        return shared(std::sqrt(sum / (6 * static_cast<double>(t.size()) - 12)), lever);
     }
     return {std::max(kSmallest_mm, std::sqrt(median(t) / kChiSquared3Median)),
             std::max(kSmallest_rad, std::sqrt(median(r) / kChiSquared3Median))};

@@ -26,6 +26,15 @@ struct Chain {
     std::size_t used_count() const;
 };
 
+// No camera and robot are better.
+inline constexpr double kFloor_mm = 0.02, kFloor_rad = 2e-4;
+
+// Fewer pairs leave the turns so free that they take up what the places scatter: both scales are then one, turns on the
+// lever of shared_lever_mm().
+inline constexpr std::size_t kFewestForScales = 6;
+// Cameras and robots that err by a millimetre turn wrongly by a radian over about that: 0.4 of the target's distance.
+double shared_lever_mm(const Chain& chain);
+
 // Standard deviations an axis that the residuals are divided by.
 struct Scales {
     double mm = 1, rad = 0.01;
@@ -40,10 +49,10 @@ double pair_square(const Chain& chain, std::size_t i, const Pose& x, const Pose&
 // infinite = least squares.
 void refine(const Chain& chain, Pose& x, Pose& y, const Scales& s, double k, int most_iterations);
 
-// Axis sigmas from the medians of the residuals.
+// Axis sigmas from the medians of the residuals; of fewer than kFewestForScales pairs one, turns on the shared lever.
 Scales scales_from_medians(const Chain& chain, const Pose& x, const Pose& y);
 
-// Least squares with the two scales estimated along.
+// Least squares with the two scales estimated along; of few pairs as above.
 Scales solve(const Chain& chain, Pose& x, Pose& y, Scales scales);
 
 // Residuals and derivatives by the tangents of X and Y, six rows a used pair, over the scales.

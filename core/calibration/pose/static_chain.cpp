@@ -25,6 +25,20 @@ double largest_sigma(const Pose& pose, const Matrix6& covariance, const Eigen::V
     return std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
 }
 
+// No camera stands so near its plate, no plate so near a world that is not the plate itself; a sensor's own frame may lie
+// beside its camera.
+constexpr double kNearestPlate_mm = 10, kNearestLaser_mm = 2;
+
+Expected<void> check_link(const UncertainPose& link, const Text& where, double nearest_mm) {
+    SEAM_OK(check_uncertain_pose(link, where));
+    const double length = link.pose.translation().norm();
+    if (length > 0 && length < nearest_mm)
+        return input_error(
+            Text("its translation is {:.3g} long: this looks like metres, not millimetres", length), where,
+            "give translations in millimetres (times 1000)");
+    return {};
+}
+
 }  // namespace
 
 Expected<void> check_uncertain_pose(const UncertainPose& link, const Text& where) {
@@ -63,19 +77,18 @@ Expected<StaticChainResult> calibrate_static(const std::vector<StaticSensor>& se
     for (const auto& sensor : sensors) ids.push_back(sensor.id);
     if (sensors.empty()) return input_error("there is no sensor", "sensors", "give at least one");
     SEAM_OK(check_ids(ids, options.exclude, "sensors"));
-    std::vector<Pose> cameras, worlds;
     for (const auto& sensor : sensors) {
         const Text where("sensor '{}', ", sensor.id);
-        SEAM_OK(check_uncertain_pose(sensor.world_from_plate, joined(where, "", "world_from_plate")));
-        SEAM_OK(check_uncertain_pose(sensor.plate_from_camera, joined(where, "", "plate_from_camera")));
-        SEAM_OK(check_uncertain_pose(sensor.camera_from_laser, joined(where, "", "camera_from_laser")));
+        SEAM_OK(check_link(sensor.world_from_plate, joined(where, "", "world_from_plate"), kNearestPlate_mm));
+        SEAM_OK(check_link(sensor.plate_from_camera, joined(where, "", Text(sensor.camera_field)),
+                           kNearestPlate_mm));
+        SEAM_OK(
+            check_link(sensor.camera_from_laser, joined(where, "", "camera_from_laser"), kNearestLaser_mm));
         if (!sensor.working_point_mm.allFinite())
             return input_error("the working point is not finite", joined(where, "", "working_point_mm"));
-        cameras.push_back(sensor.plate_from_camera.pose);
     }
-    SEAM_OK(check_millimetres(cameras, "plate_from_camera of the sensors"));
     if (options.reference_from_world)
-        SEAM_OK(check_uncertain_pose(*options.reference_from_world, "reference_from_world"));
+        SEAM_OK(check_link(*options.reference_from_world, "reference_from_world", kNearestPlate_mm));
 
     StaticChainResult result;
     result.judgement = {Verdict::good, "", ""};
@@ -119,6 +132,12 @@ Expected<StaticChainResult> calibrate_static(const std::vector<StaticSensor>& se
             one.judgement = {Verdict::usable, figure, Text("most of it is {}", Text(names[largest]))};
         else
             one.judgement = {Verdict::good, figure, ""};
+        std::vector<Text> exact;
+        for (int k = options.reference_from_world ? 0 : 1; sum > 0 && k < 4; ++k)
+            if (links[k].covariance.isZero(0)) exact.emplace_back(names[k]);
+        if (!exact.empty() && serves(one.judgement.verdict))
+            one.judgement = {Verdict::usable, Text("{}; taken as exact: {}", figure, listed(exact)),
+                             "give the covariance of each link"};
         if (result.sensors.empty() || one.judgement.verdict > result.judgement.verdict)
             result.judgement = one.judgement;
         result.sensors.push_back(std::move(one));

@@ -33,6 +33,7 @@ struct StaticSensor {
     std::string id;
     UncertainPose world_from_plate;
     UncertainPose plate_from_camera;
+    std::string camera_field = "plate_from_camera";  // what the data call it
     UncertainPose camera_from_laser;
     Eigen::Vector3d working_point_mm =
         Eigen::Vector3d::Zero();  // in the laser frame: where its sigma is judged
@@ -57,8 +58,11 @@ struct StaticChainOptions {
     std::vector<std::string> exclude;
 };
 
-// Error: no sensor, ids missing or twice, poses not rigid, metres, covariances not symmetric or with negative
-// eigenvalues.
+// A link without covariance is taken as exact and named, the verdict at most usable; where none has one, sigma and shares
+// are zero: unknown.
+//
+// Error: no sensor, ids missing or twice, poses not rigid, a link shorter than 10 mm (camera_from_laser: 2 mm) and not zero (metres), covariances
+// not symmetric or with negative eigenvalues.
 Expected<StaticChainResult> calibrate_static(const std::vector<StaticSensor>& sensors,
                                              const StaticChainOptions& options = {});
 

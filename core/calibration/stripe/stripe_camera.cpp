@@ -42,6 +42,7 @@ Expected<StripeCameraResult> StripeCameraSolver::run() {
     refine_with_stripe();
     measure();
     list_parameters();
+    if (has_robot()) measure_size();
     list_poses();
     result_.report.judgement = verdict();
     return std::move(result_);

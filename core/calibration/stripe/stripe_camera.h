@@ -13,6 +13,9 @@
 // independent); the robot's are the stated ones where its repeatability is given and the residuals are not beyond chance
 // against it.
 //
+// Good: six frames or more and three sigma of the working point within 0.5 mm; poor beyond 3 mm, or where the robot's motion
+// says that the plate is larger or smaller than stated (as of hand_eye.h).
+//
 // Degenerate: all plates parallel (f undetermined without robot motion); all stripes on one line in space
 // (the plane may turn about it); fewer than two rotation axes of the robot (hand-eye undetermined).
 
@@ -94,6 +97,14 @@ struct StripeCameraResult {
     FieldScale scale;             // of the millimetres that camera and plane give; zero without a plane
     double target_spread_mm = 0;  // rms distance of the plate's origin in the base from its mean
     double target_spread_max_mm = 0;
+    // As HandEyeResult's, the focal length's sigma with it; NaN without hand-eye.
+    double target_size = std::numeric_limits<double>::quiet_NaN(),
+           target_size_sigma = std::numeric_limits<double>::quiet_NaN();
+    // Largest sigma of the point of the laser plane on the optical axis, on the flange where there is a hand-eye, else in
+    // the camera; NaN without a plane.
+    double working_sigma_mm = std::numeric_limits<double>::quiet_NaN();
+    // Beyond chance above what the robot is stated to repeat; the larger of both counts.
+    bool robot_contradicts = false;
     std::vector<StripeFrameResult> frames;
     CalibrationReport report;
 };

@@ -2,18 +2,26 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 
 #include "core/calibration/camera/camera_limits.h"
 #include "core/calibration/camera/corner_noise.h"
+#include "core/calibration/pose/hand_eye.h"
+#include "core/calibration/problem.h"
 #include "core/calibration/statistics.h"
 #include "core/calibration/stripe/stripe_camera_solver.h"
 #include "core/calibration/stripe/stripe_scale.h"
+#include "core/geometry/decompositions.h"
 #include "core/median.h"
 
 namespace seamwright::detail {
 namespace {
 
-constexpr double kLeastNoise_px = 0.02;  // no corners are read better
+constexpr double kLeastNoise_px = 0.02;                         // no corners are read better
+constexpr std::size_t kFewFrames = 6;                           // fewer are little to check with
+constexpr double kGoodWorking_mm = 0.5, kPoorWorking_mm = 3.0;  // three sigma
+constexpr const char* kMoreFrames =
+    "take more frames with the plate tilted to both sides, nearer and farther";
 
 // y = normal of the laser plane, z in the plane towards the camera, origin where the optical axis meets
 // the plane (or the plane's point nearest to the camera when the axis runs along it).
@@ -52,6 +60,7 @@ void StripeCameraSolver::measure() {
     if (!state_.plane) return;
     measure_stripes();
     measure_plane();
+    measure_working_point();
 }
 
 void StripeCameraSolver::measure_corners() {
@@ -141,6 +150,52 @@ void StripeCameraSolver::measure_plane() {
         fit_.covariance.block(p, 0, 3, n), fit_.covariance.block(p, p, 3, 3);
     result_.scale = stripe_scale(state_.intrinsics, result_.camera.width, result_.camera.height,
                                  *state_.plane, fit_.basis, covariance, sensor_frame);
+}
+
+// Where the ray through the middle of the working range meets the laser plane, by all that is solved for together.
+void StripeCameraSolver::measure_working_point() {
+    if (!fit_.covariance.size()) return;
+    const Eigen::Index n = fit_.basis.cols();
+    const Eigen::Vector2d pixel = result_.camera.project(result_.camera_from_laser.translation());
+    const Pose flange = state_.flange_from_camera.value_or(Pose::Identity());
+    const std::unique_ptr<ceres::Manifold> manifold(plane_manifold());
+    const auto point = [&](Eigen::Index column, double step) -> Eigen::Vector3d {
+        Intrinsics k = state_.intrinsics;
+        Vector6 moved = Vector6::Zero();
+        Eigen::Vector3d turned = Eigen::Vector3d::Zero();
+        if (column < n)
+            k += step * fit_.basis.col(column);
+        else if (column < n + 3)
+            turned(column - n) = step;
+        else
+            moved(column - n - 3) = step;
+        Eigen::Vector4d at, plane;
+        at << state_.plane->normal, state_.plane->offset_mm;
+        manifold->Plus(at.data(), turned.data(), plane.data());
+        const Eigen::Vector3d ray = camera_of(k, data_.width, data_.height).undistort(pixel).homogeneous();
+        return retract(flange, moved) * (ray * (-plane[3] / plane.head<3>().dot(ray)));
+    };
+    std::vector<Eigen::Index> from;
+    for (Eigen::Index i = 0; i < n; ++i) from.push_back(i);
+    for (Eigen::Index i = 0; i < 3; ++i) from.push_back(fit_.plane_at + i);
+    for (Eigen::Index i = 0; has_robot() && fit_.hand_eye_at >= 0 && i < 6; ++i)
+        from.push_back(fit_.hand_eye_at + i);
+    const auto columns = static_cast<Eigen::Index>(from.size());
+    Eigen::MatrixXd slope(3, columns), covariance(columns, columns);
+    for (Eigen::Index i = 0; i < columns; ++i)
+        for (Eigen::Index j = 0; j < columns; ++j)
+            covariance(i, j) =
+                fit_.covariance(from[static_cast<std::size_t>(i)], from[static_cast<std::size_t>(j)]) *
+                (i < n + 3 ? 1 : robot_student()) * (j < n + 3 ? 1 : robot_student());
+    for (Eigen::Index i = 0; i < columns; ++i) {
+        constexpr double kStepShare = 1e-3;  // of the sigma
+        const double h = kStepShare * std::sqrt(std::max(0.0, covariance(i, i)));
+        slope.col(i) = Eigen::Vector3d::Zero();
+        if (h > 0) slope.col(i) = (point(i, h) - point(i, -h)) / (2 * h);
+    }
+    const Eigen::Matrix3d cover = slope * covariance * slope.transpose();
+    if (cover.allFinite())
+        result_.working_sigma_mm = std::sqrt(std::max(0.0, symmetric_eigen(cover).values(2)));
 }
 
 void StripeCameraSolver::list_parameters() {
@@ -259,6 +314,16 @@ std::optional<Judgement> StripeCameraSolver::undetermined() const {
     return std::nullopt;
 }
 
+Text StripeCameraSolver::working_words() const {
+    return Text("three sigma at the working point are {:.2f} mm", 3 * result_.working_sigma_mm);
+}
+
+double StripeCameraSolver::mean_distance_mm() const {
+    double sum = 0;
+    for (const Pose& p : state_.camera_from_target) sum += p.translation().norm();
+    return sum / static_cast<double>(count());
+}
+
 Text StripeCameraSolver::corners_misfit(double misfit) const {
     return Text("the corners fit to {:.2f} px, {:.0f} times as far off as they are read", result_.rms_px,
                 misfit);
@@ -285,6 +350,10 @@ std::optional<Judgement> StripeCameraSolver::poor(double misfit) const {
                          Text("the stripes of {} of {} frames contradict the plane of the others ({})",
                               with_stripe - stripes, with_stripe, frames_off_plane()),
                          "hold laser and camera firmly together and take all frames again"};
+    if (wrong_target_size(result_.target_size, result_.target_size_sigma, mean_distance_mm()))
+        return wrong_size_judgement(result_.target_size);
+    if (result_.working_sigma_mm > kPoorWorking_mm / 3)
+        return Judgement{Verdict::poor, working_words(), kMoreFrames};
     if (result_.flange_from_camera && result_.target_spread_mm > kPoorSpread_mm)
         return Judgement{
             Verdict::poor,
@@ -316,8 +385,18 @@ std::optional<Judgement> StripeCameraSolver::usable(double misfit) const {
             Text("{:.0f} % of the stripe rows lie within 0.5 mm of one plane", 100 * result_.on_plane_share),
             "use a flatter plate or less exposure"};
     if (!result_.flange_from_camera && !robot_note_.empty())
-        return Judgement{Verdict::usable, Text("no hand-eye: {}", robot_note_),
-                         "turn the robot about two axes by 20 degrees or more"};
+        return Judgement{Verdict::usable, Text("no hand-eye: {}", robot_note_), robot_cure_};
+    if (count() < kFewFrames)
+        return Judgement{Verdict::usable, Text("only {} frames, little to check with", count()), kMoreFrames};
+    if (result_.working_sigma_mm > kGoodWorking_mm / 3)
+        return Judgement{Verdict::usable, working_words(), kMoreFrames};
+    if (result_.robot_contradicts)
+        return Judgement{
+            Verdict::usable,
+            Text("the robot's poses scatter by {:.2f} mm and {:.3f} degrees an axis, more than its "
+                 "stated repeatability",
+                 bundle_.robot_sigma_mm, deg_from_rad(bundle_.robot_sigma_rad)),
+            "check the stated repeatability, and that the robot stood still"};
     return std::nullopt;
 }
 

@@ -2,6 +2,7 @@
 // robot's motion, what its poses err by.
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/calibration/numbers.h"
@@ -18,7 +19,6 @@ namespace {
 // What robots can be, whatever the residuals say: sigmas from .. to.
 constexpr double kBestRobot_mm = 0.05, kWorstRobot_mm = 5.0, kBestRobot_deg = 0.01, kWorstRobot_deg = 1;
 constexpr double kLeastRobotFreedom = 3.0;
-constexpr double kStatedHolds = 0.99;  // of chi squared: residuals up to it are chance
 
 // (R_a - I) t_x = s R_x t_b - t_a over relative motions, with the length scale s of the board free: s far
 // from 1 means that pitch and robot do not speak of the same millimetre.
@@ -91,6 +91,11 @@ Expected<void> StripeCameraSolver::start_robot() {
     auto start = calibrate_hand_eye(Mount::eye_in_hand, pairs);
     if (!start) {
         robot_note_ = start.error().what;
+        return {};
+    }
+    if (start->reversed) {
+        robot_note_ = "the robot's poses fit with their direction reversed";
+        robot_cure_ = "give base_from_flange, the flange's pose in the robot's base, not its inverse";
         return {};
     }
     if (start->status != HandEyeStatus::ok) {
@@ -203,11 +208,16 @@ void StripeCameraSolver::estimate_robot_sigmas(const PlateBundleFit& fit) {
     bundle_.robot_sigma_rad = std::clamp(left * fit.robot_rms_rad / std::sqrt(3.0),
                                          rad_from_deg(kBestRobot_deg), rad_from_deg(kWorstRobot_deg));
     const RobotRepeatability& stated = options_.robot;
-    const double chance = std::sqrt(chi_squared_quantile(kStatedHolds, robot_freedom()) / robot_freedom());
-    robot_as_stated_ =
-        stated.sigma_mm > 0 && stated.sigma_rad > 0 &&
-        bundle_.robot_sigma_mm <= std::max(chance * stated.sigma_mm, kBestRobot_mm) &&
-        bundle_.robot_sigma_rad <= std::max(chance * stated.sigma_rad, rad_from_deg(kBestRobot_deg));
+    // Of a residual an axis; the best that robots can be is never against what is stated.
+    const auto contradicts = [&](double found, double said, double best) {
+        return found > best &&
+               contradicts_stated(robot_freedom() * std::pow(found / said, 2), robot_freedom());
+    };
+    const bool given = stated.sigma_mm > 0 && stated.sigma_rad > 0;
+    result_.robot_contradicts =
+        given && (contradicts(bundle_.robot_sigma_mm, stated.sigma_mm, kBestRobot_mm) ||
+                  contradicts(bundle_.robot_sigma_rad, stated.sigma_rad, rad_from_deg(kBestRobot_deg)));
+    robot_as_stated_ = given && !result_.robot_contradicts;
     if (robot_as_stated_) {
         bundle_.robot_sigma_mm = stated.sigma_mm;
         bundle_.robot_sigma_rad = stated.sigma_rad;
@@ -215,6 +225,22 @@ void StripeCameraSolver::estimate_robot_sigmas(const PlateBundleFit& fit) {
         bundle_.robot_sigma_mm = std::max(bundle_.robot_sigma_mm, stated.sigma_mm);
         bundle_.robot_sigma_rad = std::max(bundle_.robot_sigma_rad, stated.sigma_rad);
     }
+}
+
+// What the robot's motion says of the plate's size, by each view alone under the camera found.
+void StripeCameraSolver::measure_size() {
+    std::vector<HandEyePair> pairs;
+    for (std::size_t k = 0; k < count(); ++k) {
+        if (!bundle_.base_from_flange[k]) continue;
+        CameraPoints view = data_.views[k];
+        for (auto& x : view.object_mm) x = state_.shape.apply(x);
+        if (const auto at = locate_target(result_.camera, view))
+            pairs.push_back({view.id, *bundle_.base_from_flange[k], at->camera_from_target});
+    }
+    const auto hand_eye = calibrate_hand_eye(Mount::eye_in_hand, pairs, {}, options_.robot);
+    if (!hand_eye) return;
+    result_.target_size = hand_eye->target_size;
+    result_.target_size_sigma = std::hypot(hand_eye->target_size_sigma, sigma_focal_px() / focal_px());
 }
 
 }  // namespace seamwright::detail

@@ -44,6 +44,7 @@ class StripeCameraSolver {
     double robot_views() const;
     double robot_freedom() const;
     double robot_student() const;
+    void measure_size();
     void estimate_robot_sigmas(const PlateBundleFit& fit);
 
     void locate_stripes();
@@ -55,6 +56,7 @@ class StripeCameraSolver {
     void measure_robot();
     void measure_stripes();
     void measure_plane();
+    void measure_working_point();
     void list_parameters();
     void list_poses();
     Judgement verdict() const;
@@ -67,6 +69,8 @@ class StripeCameraSolver {
     std::optional<Judgement> usable(double misfit) const;
     Judgement good() const;
     Text corners_misfit(double misfit) const;
+    Text working_words() const;
+    double mean_distance_mm() const;
 
     const std::vector<StripeObservation>& observations_;
     const BoardSpec& spec_;
@@ -80,7 +84,7 @@ class StripeCameraSolver {
     Model model_;
     std::vector<std::vector<PlateStripe>> lines_;  // per view
     std::vector<std::size_t> choice_;
-    Text robot_note_;
+    Text robot_note_, robot_cure_ = "turn the robot about two axes by 20 degrees or more";
     bool robot_as_stated_ = false;
 };
 

@@ -3,8 +3,8 @@
 //  "working_point":[3]?}],"reference_from_world":LINK?}; one sensor may stand at the top level.
 // LINK = POSE, or {"pose":POSE,"covariance":6x6 (mm, rad)}, or {"pose":POSE,"sigma_mm","sigma_deg"}.
 // -> {"sensors":[{"id","world_from_laser" (or
-// "reference_from_laser"),"sigma","covariance","working_sigma_mm","shares","verdict",..}],..}; no report but its
-// judgement.
+// "reference_from_laser"),"sigma","covariance","working_sigma_mm" (null: no link has a
+// covariance),"shares","verdict",..}],..}; no report but its judgement.
 
 #include "core/calibration/pose/static_chain.h"
 #include "devices/exchange/json_fields.h"
@@ -35,6 +35,7 @@ Expected<StaticSensor> parse_sensor(const json& entry, std::size_t index, const 
                            "give one of them");
     SEAM_TRY(auto camera, link_field(entry, inverted ? "camera_from_plate" : "plate_from_camera", where));
     sensor.plate_from_camera = inverted ? inverse(camera) : camera;
+    if (inverted) sensor.camera_field = "camera_from_plate";
     SEAM_TRY(auto laser, link_field(entry, "camera_from_laser", where));
     sensor.camera_from_laser = laser;
     if (entry.contains("working_point")) {
@@ -75,9 +76,11 @@ Expected<CalibrationSolution> solve_static(const json& data, const ExcludedIds& 
         json one;
         one["id"] = s.id;
         one[frame] = pose_json(s.world_from_laser.pose);
-        one["sigma"] = pose_sigma_json(s.world_from_laser.pose, s.world_from_laser.covariance);
-        one["covariance"] = matrix_json(s.world_from_laser.covariance);
-        one["working_sigma_mm"] = number_json(s.working_sigma_mm);
+        const bool known = !s.world_from_laser.covariance.isZero(0);
+        one["sigma"] =
+            known ? pose_sigma_json(s.world_from_laser.pose, s.world_from_laser.covariance) : json(nullptr);
+        one["covariance"] = known ? matrix_json(s.world_from_laser.covariance) : json(nullptr);
+        one["working_sigma_mm"] = known ? number_json(s.working_sigma_mm) : json(nullptr);
         one["shares"] = {{"reference_from_world", s.shares[0]},
                          {"world_from_plate", s.shares[1]},
                          {"plate_from_camera", s.shares[2]},

@@ -3,7 +3,7 @@
 // -> {"status","images","boards_found","camera","reprojection_rms_px","laser_plane":{"normal","distance_mm"},
 //     "camera_from_laser","on_plane_share" (frames that share the
 //     plane),"on_plane_share_all_frames","plane_rms_mm",
-//     "hand_eye":{"flange_from_camera","target_spread_mm",..},"plate":{"shape","stretch","shear","bow_mm"},"frames":[..],...}
+//     "working_sigma_mm","hand_eye":{"flange_from_camera","target_spread_mm","target_size",..},"plate":{"shape","stretch","shear","bow_mm"},"frames":[..],...}
 
 #include <algorithm>
 #include <cmath>
@@ -124,7 +124,11 @@ Expected<CalibrationSolution> solve_stripe_camera(const json& data, const Exclud
             {"sigma", pose_sigma_json(*solved.flange_from_camera, solved.flange_from_camera_covariance)},
             {"covariance_pose", matrix_json(solved.flange_from_camera_covariance)},
             {"target_spread_mm", solved.target_spread_mm},
-            {"target_spread_max_mm", solved.target_spread_max_mm}};
+            {"target_spread_max_mm", solved.target_spread_max_mm},
+            {"target_size",
+             {{"factor", number_json(solved.target_size)},
+              {"sigma", number_json(solved.target_size_sigma)}}}};
+    result["working_sigma_mm"] = known ? number_json(solved.working_sigma_mm) : json(nullptr);
     static constexpr const char* shapes[] = {"rigid", "in-plane", "bowed"};
     result["plate"] = {{"shape", shapes[static_cast<int>(solved.shape_freedom)]},
                        {"stretch", solved.shape.stretch},

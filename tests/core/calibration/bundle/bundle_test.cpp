@@ -98,6 +98,27 @@ TEST(Bundle, AWrongFeatureIsNamedAndLeftOut) {
     }
 }
 
+TEST(Bundle, NamesTheUnitThatFits) {
+    Ring ring(6);
+    const Seen s = scene(ring, 3, 6, 1, 0.1);
+    const auto cure = [&](double object, double cameras) {
+        auto placed = s.cameras;
+        auto seen = s.sights;
+        for (auto& c : placed) c.world_from_camera.pose.translation() *= cameras;
+        for (auto& one : seen) one.object_mm *= object;
+        const auto r = locate_object(placed, seen, {});
+        if (!r) return r.error().sentence();
+        EXPECT_FALSE(serves(r->report.judgement.verdict));
+        return r->report.judgement.cure.english();
+    };
+    EXPECT_TRUE(serves(locate_object(s.cameras, s.sights, {})->report.judgement.verdict));
+    EXPECT_THAT(cure(1e-3, 1), HasSubstr("object are metres"));
+    EXPECT_THAT(cure(1 / 25.4, 1), HasSubstr("object are inches"));
+    EXPECT_THAT(cure(1, 1e-3), HasSubstr("cameras are metres"));
+    EXPECT_THAT(cure(1, 1 / 25.4), HasSubstr("cameras are inches"));
+    EXPECT_THAT(cure(1e-3, 1e-3), HasSubstr("metres"));
+}
+
 // (2.24): v = 0 turns a feature off, a small one lets it count for little.
 TEST(Bundle, WeightsCount) {
     Ring ring(5);

@@ -124,6 +124,113 @@ TEST(HandEyeIntervals, AStatedRepeatabilityHoldsAndIsWorthPairs) {
         }
 }
 
+// A camera and a robot of equal errors in all directions, and the box that their poses come from.
+struct PlainCell {
+    int pairs;
+    double mm, deg, tilt_deg, reach_mm;
+};
+struct PlainPairs {
+    Motion camera;
+    std::vector<HandEyePair> list;
+};
+PlainPairs plain_pairs(const PlainCell& c, Dice& dice, double robot_mm = 0, double robot_deg = 0) {
+    PlainPairs made;
+    made.camera = motion(dice.box(2, 2, 2), Vec3(60, -20, 150));
+    const Motion target = motion(dice.box(0.5, 0.5, 0.5), Vec3(900, 150, 100));
+    const double tilt = rad_from_deg(c.tilt_deg);
+    for (int i = 0; i < c.pairs; ++i) {
+        const Motion view = motion(Vec3::Zero(), Vec3(0, 0, c.reach_mm) + dice.box(50, 50, c.reach_mm / 6)) *
+                            motion(dice.box(tilt, tilt, tilt), Vec3::Zero()) *
+                            motion(Vec3(kPi, 0, 0), Vec3::Zero());
+        const Motion robot = target * view.inverse() * made.camera.inverse() *
+                             motion(dice.noise(rad_from_deg(robot_deg)), dice.noise(robot_mm));
+        const Motion found = view * motion(dice.noise(rad_from_deg(c.deg)), dice.noise(c.mm));
+        made.list.push_back({"p" + std::to_string(i), Pose(robot.matrix()), Pose(found.matrix())});
+    }
+    return made;
+}
+
+// Share of answers whose six numbers together lie in the ellipse of 95 % that they state.
+double in_ellipse(const PlainCell& c, int trials) {
+    int inside = 0, asked = 0;
+    for (int trial = 0; trial < trials; ++trial) {
+        Dice dice(static_cast<unsigned>(100 * c.pairs + trial));
+        const PlainPairs made = plain_pairs(c, dice);
+        const auto r = calibrate_hand_eye(Mount::eye_in_hand, made.list);
+        if (!r || r->status != HandEyeStatus::ok) continue;
+        const auto d = off(Motion(r->x.matrix()), made.camera);
+        inside += d.dot(r->covariance_x.ldlt().solve(d)) < 12.592;
+        ++asked;
+    }
+    EXPECT_GE(asked, trials * 9 / 10);
+    return static_cast<double>(inside) / asked;
+}
+
+TEST(HandEyeIntervals, TheEllipseOfFewPairsHolds) {
+    for (const int pairs : {3, 4, 6, 8})
+        for (const auto& [mm, deg, tilt, reach] :
+             {std::array{0.03, 0.01, 25.0, 300.0}, {0.03, 0.01, 40.0, 300.0}, {0.1, 0.02, 20.0, 600.0}}) {
+            const double share = in_ellipse({pairs, mm, deg, tilt, reach}, 100);
+            std::printf("%d pairs, %.2f mm, %.2f deg, %.0f deg tilt: %.3f\n", pairs, mm, deg, tilt, share);
+            EXPECT_GE(share, 0.86) << pairs << " pairs, " << mm << " mm";
+            EXPECT_LE(share, pairs < 5 ? 1.0 : 0.995) << pairs << " pairs, " << mm << " mm";
+        }
+}
+
+// The corners of a board: distance and tilt far worse than the rest.
+TEST(HandEyeIntervals, FewPairsOfABoardHold) {
+    for (const Mount mount : {Mount::eye_to_hand, Mount::eye_in_hand})
+        for (const int pairs : {3, 5, 7}) {
+            Share all, halves;
+            for (const double px : {0.05, 0.2})
+                for (const auto& [mm, rad] : {std::pair{0.05, 1e-4}, {0.2, 4e-4}}) {
+                    Share truth;
+                    run({mount, pairs, mm, rad, px}, 40, truth, halves);
+                    EXPECT_GE(truth.value(), 0.88) << pairs << " pairs, " << mm << " mm, " << px << " px";
+                    all.add(truth);
+                }
+            all.print(std::string(name_of(mount)) + " " + std::to_string(pairs) + " pairs");
+            EXPECT_GE(all.value(), 0.92) << pairs;
+            EXPECT_LE(all.value(), 0.99) << pairs;
+        }
+}
+
+// The robot's motion is the measure of the target's pitch; robots that err are no reason to doubt it.
+TEST(HandEyeIntervals, AWrongPitchShowsAndAnHonestOneDoesNot) {
+    int honest = 0, doubted = 0, wrong = 0, seen = 0;
+    Share sizes;
+    for (const double robot_mm : {0.0, 0.05, 0.1, 0.3})
+        for (const int pairs : {5, 8, 12, 20})
+            for (int trial = 0; trial < 30; ++trial) {
+                Dice dice(static_cast<unsigned>(trial + 97 * pairs));
+                const RobotRepeatability stated =
+                    trial % 2 ? RobotRepeatability{robot_mm, rad_from_deg(0.1 * robot_mm)}
+                              : RobotRepeatability{};
+                PlainPairs made = plain_pairs({pairs, 0.03, 0.01, 25, 300}, dice, robot_mm, 0.1 * robot_mm);
+                const auto r = calibrate_hand_eye(Mount::eye_in_hand, made.list, {}, stated);
+                ASSERT_TRUE(r);
+                ++honest;
+                doubted += r->report.judgement.reason.english().find("than stated") != std::string::npos;
+                sizes.add(r->target_size - 1, r->target_size_sigma);
+                if (pairs < 8 || robot_mm > 0.1) continue;
+                const double share = trial % 3 == 0 ? 1.01 : trial % 3 == 1 ? 0.99 : 1.005;
+                for (HandEyePair& p : made.list) p.camera_from_target.translation() *= share;
+                const auto w = calibrate_hand_eye(Mount::eye_in_hand, made.list, {}, stated);
+                ASSERT_TRUE(w);
+                ++wrong;
+                const bool named =
+                    w->report.judgement.reason.english().find("than stated") != std::string::npos;
+                seen += named && w->report.judgement.verdict == Verdict::poor &&
+                        std::abs(w->target_size * share - 1) < 0.003;
+            }
+    sizes.print("size of the target");
+    std::printf("honest doubted %d of %d, wrong seen %d of %d\n", doubted, honest, seen, wrong);
+    EXPECT_LE(doubted, honest / 100);
+    EXPECT_GE(seen, wrong * 95 / 100);
+    EXPECT_GE(sizes.value(), 0.93);
+    EXPECT_LE(sizes.value(), 0.985);
+}
+
 // Pairs without a fault do not promise what the robot cannot do.
 TEST(HandEyeIntervals, NeverSurerThanTheStatedRobot) {
     Dice dice(5);

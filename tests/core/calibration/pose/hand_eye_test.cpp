@@ -14,6 +14,7 @@ namespace {
 
 using namespace simulation;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 HandEyeResult solve(Mount mount, const std::vector<HandEyePair>& pairs,
                     const std::vector<std::string>& exclude = {}) {
@@ -125,6 +126,74 @@ TEST(HandEye, RecognisesASwappedMountAndAnInvertedTarget) {
     EXPECT_THAT(inverted.report.judgement.cure, HasSubstr("inverted"));
 }
 
+// Nine equations of places would fit exactly with the turns left free: they do not tell what they err by.
+TEST(HandEye, ThreePairsDoNotTellTheirOwnErrors) {
+    for (unsigned seed = 0; seed < 40; ++seed) {
+        Random random(seed);
+        HandEyeCell cell = any_hand_eye_cell(random);
+        cell.sigma_mm = 0.03;
+        cell.sigma_rad = 1.7e-4;
+        const auto pairs = hand_eye_pairs(cell, 3, random);
+        const auto r = solve(cell.mount, pairs);
+        if (r.status != HandEyeStatus::ok) continue;
+        EXPECT_EQ(r.report.judgement.verdict, Verdict::poor) << seed;
+        EXPECT_THAT(r.report.judgement.cure, HasSubstr("repeatability")) << seed;
+        EXPECT_THAT(r.report.judgement.reason, Not(HasSubstr("not used"))) << seed;
+        EXPECT_EQ(r.report.hold_out.folds, 0);
+        EXPECT_GE(r.sigma_mm, 0.02) << seed;
+        for (int k = 0; k < 3; ++k) EXPECT_GT(std::sqrt(r.covariance_x(k, k)), 0.01) << seed;
+        const Vector6 off = difference(cell.x, r.x);
+        EXPECT_LT(off.dot(r.covariance_x.ldlt().solve(off)), 60) << seed;
+        const auto stated = calibrate_hand_eye(cell.mount, pairs, {}, {0.03, 1e-4});
+        ASSERT_TRUE(stated);
+        if (3 * std::sqrt(stated->covariance_x.topLeftCorner<3, 3>().diagonal().maxCoeff()) < 6) {
+            EXPECT_EQ(stated->report.judgement.verdict, Verdict::usable) << seed;
+        }
+    }
+}
+
+TEST(HandEye, AStandCountsOnceHoweverOftenItIsTaken) {
+    Random random(21);
+    HandEyeCell cell = any_hand_eye_cell(random);
+    cell.mount = Mount::eye_in_hand;
+    cell.sigma_mm = 0.05;
+    cell.sigma_rad = 2e-4;
+    const auto few = hand_eye_pairs(cell, 4, random);
+    std::vector<HandEyePair> many;
+    for (int again = 0; again < 4; ++again)
+        for (HandEyePair pair : few) {
+            pair.id += "_" + std::to_string(again);
+            pair.camera_from_target.translation() +=
+                Eigen::Vector3d(normal(random, 0.001), normal(random, 0.001), normal(random, 0.001));
+            many.push_back(pair);
+        }
+    const auto once = solve(cell.mount, few), often = solve(cell.mount, many);
+    EXPECT_EQ(often.report.judgement.verdict, once.report.judgement.verdict);
+    EXPECT_EQ(often.report.hold_out.folds, 4);
+    EXPECT_THAT(often.report.judgement.reason, HasSubstr("only 4 poses"));
+    EXPECT_EQ(often.pairs_used, 16);
+    for (int k = 0; k < 6; ++k) EXPECT_NEAR(often.covariance_x(k, k) / once.covariance_x(k, k), 1, 0.1) << k;
+}
+
+TEST(HandEye, AWrongPitchIsNamedWithWhatItIsOffBy) {
+    for (unsigned seed = 70; seed < 80; ++seed) {
+        Random random(seed);
+        HandEyeCell cell = any_hand_eye_cell(random);
+        cell.sigma_mm = 0.03;
+        cell.sigma_rad = 2e-4;
+        auto pairs = hand_eye_pairs(cell, 10, random);
+        const auto honest = solve(cell.mount, pairs);
+        EXPECT_EQ(honest.report.judgement.verdict, Verdict::good) << honest.report.judgement.reason;
+        EXPECT_LT(std::abs(honest.target_size - 1), 4 * honest.target_size_sigma);
+        for (auto& pair : pairs) pair.camera_from_target.translation() *= 1.01;
+        const auto wrong = solve(cell.mount, pairs);
+        EXPECT_EQ(wrong.report.judgement.verdict, Verdict::poor) << seed;
+        EXPECT_THAT(wrong.report.judgement.reason, HasSubstr("smaller than stated")) << seed;
+        EXPECT_THAT(wrong.report.judgement.cure, HasSubstr("pitch"));
+        EXPECT_NEAR(wrong.target_size, 1 / 1.01, 0.002) << seed;
+    }
+}
+
 TEST(HandEye, RefusesBadInput) {
     Random random(8);
     const HandEyeCell cell = any_hand_eye_cell(random);
@@ -152,6 +221,11 @@ TEST(HandEye, RefusesBadInput) {
     bad = good;
     bad[1].base_from_flange.matrix()(0, 0) = std::nan("");
     expect_error(bad, "P2");
+    bad = good;
+    bad.push_back(good[2]);
+    bad.back().id = "copy";
+    expect_error(bad, "'P3' and 'copy' are the same pair");
+    EXPECT_TRUE(calibrate_hand_eye(cell.mount, bad, {"copy"}));
     bad = good;
     bad[1].id = "P1";
     expect_error(bad, "twice");

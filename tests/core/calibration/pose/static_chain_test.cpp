@@ -107,6 +107,19 @@ TEST(StaticChain, SeveralSensorsSharesAndVerdicts) {
     }
 }
 
+TEST(StaticChain, NamesWhatItTakesAsExact) {
+    Random random(5);
+    StaticSensor sensor = any_sensor("S1", random);
+    for (auto link : {&StaticSensor::world_from_plate, &StaticSensor::plate_from_camera,
+                      &StaticSensor::camera_from_laser})
+        (sensor.*link).covariance *= 0.01;
+    EXPECT_EQ(calibrate_static({sensor})->judgement.verdict, Verdict::good);
+    sensor.camera_from_laser.covariance.setZero();
+    const auto result = calibrate_static({sensor});
+    EXPECT_EQ(result->judgement.verdict, Verdict::usable);
+    EXPECT_THAT(result->judgement.reason, HasSubstr("taken as exact: the laser plane in the camera"));
+}
+
 TEST(StaticChain, RefusesBadInput) {
     Random random(3);
     const StaticSensor good = any_sensor("S1", random);
@@ -129,6 +142,26 @@ TEST(StaticChain, RefusesBadInput) {
     bad = good;
     bad.plate_from_camera.pose.translation() *= 1e-3;
     expect_error({bad}, "metres");
+    expect_error({bad}, "plate_from_camera");
+    bad.camera_field = "camera_from_plate";
+    expect_error({bad}, "camera_from_plate");
+    for (auto link : {&StaticSensor::world_from_plate, &StaticSensor::camera_from_laser}) {
+        bad = good;
+        (bad.*link).pose.translation() *= 1e-3;
+        expect_error({good,
+                      [&] {
+                          bad.id = "S2";
+                          return bad;
+                      }()},
+                     "metres");
+        expect_error({bad},
+                     link == &StaticSensor::world_from_plate ? "world_from_plate" : "camera_from_laser");
+    }
+    // A world that is the plate, a laser frame that is the camera's.
+    bad = good;
+    bad.world_from_plate.pose.setIdentity();
+    bad.camera_from_laser.pose.setIdentity();
+    EXPECT_TRUE(calibrate_static({bad}).has_value());
     EXPECT_FALSE(calibrate_static({good}, {{}, {"S1"}}).has_value());
 }
 

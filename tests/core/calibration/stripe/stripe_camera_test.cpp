@@ -209,6 +209,71 @@ TEST(StripeCamera, RefusesWhatContradictsItself) {
     EXPECT_THAT(refused(o, board_7x6()), HasSubstr("metres"));
 }
 
+TEST(StripeCamera, FewFramesAreUsableAtMost) {
+    const Scene s = scene(7, 8, 0, 0, 0.05, 0.05);
+    for (const int n : {3, 4, 5}) {
+        const std::vector<StripeObservation> few(s.frames.begin(), s.frames.begin() + n);
+        const auto r = calibrate_stripe_camera(few, board_7x6(), {});
+        ASSERT_TRUE(r);
+        EXPECT_GE(r->report.judgement.verdict, Verdict::usable) << n << r->report.judgement.reason;
+    }
+    const auto all = calibrate_stripe_camera(s.frames, board_7x6(), {});
+    ASSERT_TRUE(all);
+    EXPECT_EQ(all->report.judgement.verdict, Verdict::good) << all->report.judgement.reason;
+    EXPECT_LT(3 * all->working_sigma_mm, 0.5);
+    // Where the sensor's middle really is, by what it is said to be known to.
+    const Eigen::Vector3d middle = all->camera_from_laser.translation();
+    EXPECT_LT((*all->flange_from_camera * middle - s.flange_from_camera * middle).norm(),
+              5 * all->working_sigma_mm);
+    // Noise that is large: the working point says so.
+    const auto rough = calibrate_stripe_camera(scene(7, 8, 0, 0, 1.0, 0.3).frames, board_7x6(), {});
+    ASSERT_TRUE(rough);
+    EXPECT_GE(rough->report.judgement.verdict, Verdict::usable) << rough->report.judgement.reason;
+}
+
+TEST(StripeCamera, APitchOffByAPerCentIsNamed) {
+    for (unsigned seed = 10; seed < 14; ++seed) {
+        const Scene s = scene(seed, 14, 0, 0, 0.05, 0.05);
+        const auto honest = calibrate_stripe_camera(s.frames, board_7x6(), {});
+        ASSERT_TRUE(honest);
+        EXPECT_EQ(honest->report.judgement.verdict, Verdict::good) << honest->report.judgement.reason;
+        auto wrong = s.frames;
+        for (auto& f : wrong)
+            for (auto& p : f.board->object_mm) p *= 1.01;
+        auto spec = board_7x6();
+        spec.pitch_mm *= 1.01;
+        const auto r = calibrate_stripe_camera(wrong, spec, {});
+        ASSERT_TRUE(r);
+        EXPECT_EQ(r->report.judgement.verdict, Verdict::poor)
+            << seed << ": " << r->target_size << " +- " << r->target_size_sigma;
+        EXPECT_THAT(r->report.judgement.reason, HasSubstr("smaller than stated")) << seed;
+    }
+}
+
+TEST(StripeCamera, ReversedRobotPosesAreNamed) {
+    Scene s = scene(8, 9, 0, 0, 0.1, 0.1);
+    for (auto& f : s.frames) f.base_from_flange = f.base_from_flange->inverse();
+    const auto r = calibrate_stripe_camera(s.frames, board_7x6(), {});
+    ASSERT_TRUE(r);
+    EXPECT_FALSE(r->flange_from_camera);
+    EXPECT_THAT(r->report.judgement.reason, HasSubstr("reversed"));
+    EXPECT_THAT(r->report.judgement.cure, HasSubstr("base_from_flange"));
+}
+
+TEST(StripeCamera, ARobotThatScattersBeyondWhatItIsStatedToIsSaid) {
+    const Scene s = scene(9, 10, 0, 0, 0.4, 0.05);
+    StripeCameraOptions options;
+    options.robot = {0.4, rad_from_deg(0.02)};
+    auto r = calibrate_stripe_camera(s.frames, board_7x6(), options);
+    ASSERT_TRUE(r);
+    EXPECT_FALSE(r->robot_contradicts);
+    options.robot = {0.05, rad_from_deg(0.02)};
+    r = calibrate_stripe_camera(s.frames, board_7x6(), options);
+    ASSERT_TRUE(r);
+    EXPECT_TRUE(r->robot_contradicts);
+    EXPECT_NE(r->report.judgement.verdict, Verdict::good);
+}
+
 // --- real frames
 // -------------------------------------------------------------------------------------------------
 

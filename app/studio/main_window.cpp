@@ -125,6 +125,9 @@ MainWindow::MainWindow(Studio& studio) : studio_(studio), desk_(studio.desk()) {
     });
     qApp->installEventFilter(this);
     connect(&desk_, &Desk::trouble, this, &MainWindow::tell);
+    connect(&desk_, &Desk::project_changed, this, [this] {
+        if (trouble_->property("tone") == "alarm") trouble_->hide();  // an edit has succeeded since
+    });
     connect(&desk_, &Desk::checklist_changed, this, [this] {
         refresh_next();
         if (!beginning_ || !desk_.station().connected) return;
@@ -263,7 +266,8 @@ void MainWindow::make_central() {
     columns->addWidget(pages_, 1);
     connect(rail_, &StepRail::step_chosen, this, &MainWindow::show_step);
 
-    trouble_ = new QFrame;
+    // Over the page's lower end: nothing moves from under the pointer when it comes or goes.
+    trouble_ = new QFrame(central);
     trouble_->setObjectName("trouble");
     auto* trouble_row = new QHBoxLayout(trouble_);
     trouble_row->setContentsMargins(10, 4, 4, 4);
@@ -275,23 +279,30 @@ void MainWindow::make_central() {
                                        [this] { trouble_->hide(); }));
     trouble_->hide();
     next_ = make_button("next_step", "next", {}, tr("Go to the next step"),
-                        [this] { show_step(next_step(desk_.steps())); });
+                        [this] { show_step(push_waits() ? Step::run : next_step(desk_.steps())); });
+    connect(run_page_, &RunPage::asks_changed, this, &MainWindow::refresh_next);
     auto* box = new QVBoxLayout(central);
     box->setContentsMargins(4, 0, 0, 4);
-    box->addWidget(trouble_);
     box->addLayout(columns, 1);
     box->addWidget(next_);
     setCentralWidget(central);
 }
 
 void MainWindow::show_step(Step step) {
-    beginning_ = false;  // whoever has chosen a step stays there
+    if (step != step_ && !beginning_) trouble_->hide();  // it was about the step that is left
+    beginning_ = false;                                  // whoever has chosen a step stays there
     step_ = step;
     pages_->setCurrentIndex(static_cast<int>(step));
     rail_->show_step(step);
+    refresh_next();
+}
+
+bool MainWindow::push_waits() const {
+    return run_page_->asks() && step_ != Step::run;
 }
 
 void MainWindow::begin_at_next() {
+    beginning_ = true;
     show_step(next_step(desk_.steps()));
     beginning_ = true;
 }

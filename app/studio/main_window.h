@@ -69,6 +69,8 @@ class MainWindow : public QMainWindow {
     void tell(const QString& sentence);       // of what went wrong
     void tell_done(const QString& sentence);  // of what was done
     void show_message(const QString& sentence, const char* tone);
+    void place_message();
+    bool push_waits() const;  // for an answer on a page that is not shown
     bool take_typed();
     QString project_to_write(const QString& title, const QString& suggestion);
     void new_project();

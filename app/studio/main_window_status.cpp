@@ -58,14 +58,15 @@ void MainWindow::make_status() {
 }
 
 void MainWindow::refresh_next() {
+    const auto say = [this](const QString& text) {
+        next_->setText(wrapped(text, next_->fontMetrics(), next_->width() - kNextMargin_px));
+        next_->setMinimumHeight(std::max(style::kTargetPx, next_->sizeHint().height()));  // all its lines
+        next_->setAccessibleName(text);
+        next_->setToolTip(text);
+    };
+    if (push_waits()) return say(tr("A push waits for your answer: go to Run"));
     for (const StepState& s : desk_.steps())
-        if (s.status == StepStatus::next) {
-            const QString text = tr("Next: %1 - %2").arg(step_name(s.step), s.why);
-            next_->setText(wrapped(text, next_->fontMetrics(), next_->width() - kNextMargin_px));
-            next_->setMinimumHeight(std::max(style::kTargetPx, next_->sizeHint().height()));  // all its lines
-            next_->setAccessibleName(text);
-            next_->setToolTip(text);
-        }
+        if (s.status == StepStatus::next) return say(tr("Next: %1 - %2").arg(step_name(s.step), s.why));
 }
 
 // What is not renewed is not called ok: a sensor by the age of its newest frame, a robot by the age of what it
@@ -132,7 +133,18 @@ void MainWindow::show_message(const QString& sentence, const char* tone) {
     trouble_->setProperty("tone", tone);
     trouble_->style()->unpolish(trouble_);
     trouble_->style()->polish(trouble_);
+    place_message();
     trouble_->show();
+    trouble_->raise();
+}
+
+void MainWindow::place_message() {
+    constexpr int kEdge_px = 6;
+    const int width = pages_->width() - 2 * kEdge_px;
+    trouble_->ensurePolished();
+    const int height = std::min(trouble_->heightForWidth(width), pages_->height());
+    const QPoint lower_left = pages_->mapTo(centralWidget(), QPoint(kEdge_px, pages_->height() - kEdge_px));
+    trouble_->setGeometry(lower_left.x(), lower_left.y() - height, width, height);
 }
 
 void MainWindow::ask_who() {
@@ -180,6 +192,10 @@ bool MainWindow::eventFilter(QObject* object, QEvent* event) {
         case QEvent::MouseMove:
         case QEvent::Wheel:
             if (idle_timer_.isActive()) idle_timer_.start();
+            break;
+        case QEvent::Resize:
+        case QEvent::Move:
+            if (object == pages_ && trouble_->isVisible()) place_message();
             break;
         case QEvent::ShortcutOverride:
             // A field in which nothing is being typed leaves undo and redo to the project.

@@ -8,6 +8,7 @@
 #include "projects/drift/drift_point.h"
 #include "projects/measure/measure.h"
 #include "projects/measure/nozzle.h"
+#include "projects/measure/reference_feature.h"
 #include "projects/model/part_types.h"
 #include "projects/proof/forecast.h"
 #include "projects/proof/known_shift.h"
@@ -32,6 +33,8 @@ CheckItem stale(CheckStep step, Text why) {
 CheckItem done(CheckStep step, Text why, std::vector<Text> evidence) {
     return {step, CheckStatus::done, std::move(why), std::move(evidence)};
 }
+
+constexpr double kSlackOfTyped = 1 + 1e-9;  // of limits that were typed
 
 std::string date_of(const std::string& utc) {
     return utc.substr(0, std::min<std::size_t>(10, utc.size()));
@@ -134,14 +137,7 @@ CheckItem check_taught(const Project& p) {
     std::vector<Text> evidence;
     for (const Spot& spot : p.spots) {
         if (!spot.enabled) continue;
-        if (spot.reference_profile.size() == 0)
-            return missing(kStep, Text("measure the reference of spot {}", spot.id));
-        if (spot.reference_state == ReferenceState::from_type)
-            return missing(kStep,
-                           Text("teach spot {} on its own part: its reference is another type's", spot.id));
-        if (spot.reference_state == ReferenceState::from_drawing)
-            return missing(kStep,
-                           Text("confirm spot {} on the part: its reference is from the drawing", spot.id));
+        if (auto open = taught_open(p, spot)) return *open;
         evidence.push_back(Text("spot {}: {}, reference x {} mm, z {} mm", spot.id, spot.feature.kind,
                                 mm(spot.reference_mm.x()), mm(spot.reference_mm.z())));
     }
@@ -170,19 +166,12 @@ CheckItem check_frozen(const Project& p, const Facts& facts) {
     std::vector<Text> evidence;
     for (const Spot& spot : p.spots) {
         if (!spot.enabled) continue;
-        if (!spot.curve) return missing(kStep, Text("record the pass of spot {} and accept it", spot.id));
+        if (auto open = frozen_open(p, facts, spot)) return *open;
         const Evidence* e = newest<FrozenContour>(facts, spot.id);
-        if (!e)
-            return missing(
-                kStep, Text("the file holds no accepted pass of spot {}: record it and accept it", spot.id));
         const auto& f = std::get<FrozenContour>(e->what);
-        if (f.status != AlignmentStatus::frozen)
-            return missing(kStep, Text("the contour of spot {} is {}", spot.id, name_of_status(f.status)));
-        if (const auto then = facts.setups.find(e->setup);
-            then == facts.setups.end() || pass_changed(*then->second, p, spot.id))
-            return stale(kStep, Text("spot {} was changed since its pass of {}", spot.id, date_of(e->utc)));
-        evidence.push_back(Text("spot {}: frozen, expected error {} mm at a jitter of {} mm, {}", spot.id,
-                                mm(f.expected_error_mm), mm(f.jitter_mm), date_of(e->utc)));
+        evidence.push_back(
+            Text("spot {}: frozen, expected error {} mm at a jitter of {} mm, tolerance {} mm, {}", spot.id,
+                 mm(f.expected_error_mm), mm(f.jitter_mm), mm(f.tolerance_mm), date_of(e->utc)));
     }
     if (evidence.empty()) return missing(kStep, Text("there is no spot to align"));
     const std::size_t frozen = evidence.size();
@@ -375,6 +364,71 @@ Text name_of(CheckStatus status) {
     return status == CheckStatus::done    ? Text("done")
            : status == CheckStatus::stale ? Text("stale")
                                           : Text("missing");
+}
+
+std::optional<CheckItem> taught_open(const Project& project, const Spot& spot) {
+    constexpr CheckStep kStep = CheckStep::taught;
+    if (spot.reference_profile.size() == 0)
+        return missing(kStep, Text("measure the reference of spot {}", spot.id));
+    if (spot.reference_state == ReferenceState::from_type)
+        return missing(kStep,
+                       Text("teach spot {} on its own part: its reference is another type's", spot.id));
+    if (spot.reference_state == ReferenceState::from_drawing)
+        return missing(kStep,
+                       Text("confirm spot {} on the part: its reference is from the drawing", spot.id));
+    if (const double beside = reference_beside_mm(project, spot); beside > 0)
+        return missing(
+            kStep, Text("the reference of spot {} lies {} mm beside its feature in the profile kept with it: "
+                        "measure the reference again",
+                        spot.id, mm(beside)));
+    return std::nullopt;
+}
+
+std::optional<CheckItem> frozen_open(const Project& project, const Facts& facts, const Spot& spot) {
+    constexpr CheckStep kStep = CheckStep::frozen;
+    if (!spot.curve) return missing(kStep, Text("record the pass of spot {} and accept it", spot.id));
+    const Evidence* e = newest<FrozenContour>(facts, spot.id);
+    if (!e)
+        return missing(kStep,
+                       Text("the file holds no accepted pass of spot {}: record it and accept it", spot.id));
+    const auto& f = std::get<FrozenContour>(e->what);
+    if (f.status != AlignmentStatus::frozen)
+        return missing(kStep, Text("the contour of spot {} is {}", spot.id, name_of_status(f.status)));
+    const double needed = project.requirements.sigma3_mm;
+    if (!(f.expected_error_mm <= needed * kSlackOfTyped))
+        return missing(
+            kStep, Text("the jitter moves the contour of spot {} by up to {} mm, {} mm are required", spot.id,
+                        mm(f.expected_error_mm), mm(needed)));
+    if (widened_tolerance(project, f.tolerance_mm))
+        return missing(kStep,
+                       Text("the contour of spot {} was judged frozen at a tolerance of {} mm, {} mm are "
+                            "required: record its pass again with a smaller tolerance",
+                            spot.id, mm(f.tolerance_mm), mm(needed)));
+    if (const auto then = facts.setups.find(e->setup);
+        then == facts.setups.end() || pass_changed(*then->second, project, spot.id))
+        return stale(kStep, Text("spot {} was changed since its pass of {}", spot.id, date_of(e->utc)));
+    return std::nullopt;
+}
+
+bool widened_tolerance(const Project& project, double tolerance_mm) {
+    return !(tolerance_mm <= project.requirements.sigma3_mm * kSlackOfTyped);
+}
+
+double reference_beside_mm(const Project& project, const Spot& spot) {
+    // Between the mean of the arrivals and one of them lies what an ordinary robot repeats (0.1 mm, thesis 5.1), five
+    // times, or what this one was measured to, and the feature's own noise.
+    constexpr double kRepeatsMm = 0.6, kSigmas = 6;
+    const auto found = feature_at_reference(spot);
+    if (!found) return 0;
+    const Eigen::Vector2d beside(spot.weights.x() == 0 ? 0 : spot.reference_mm.x() - found->point_mm.x(),
+                                 spot.weights.z() == 0 ? 0 : spot.reference_mm.z() - found->point_mm.y());
+    double repeats = std::max(kRepeatsMm, kSigmas * spot.sigma_mm);
+    if (const RobotSetup* robot = find_robot(project, spot.robot_id))
+        repeats =
+            std::max(repeats, kSigmas * std::sqrt(robot->arrival_covariance.topLeftCorner<3, 3>().trace()));
+    const Eigen::Matrix2d reach =
+        kSigmas * kSigmas * found->covariance_mm2 + repeats * repeats * Eigen::Matrix2d::Identity();
+    return beside.dot(reach.ldlt().solve(beside)) > 1 ? beside.norm() : 0;
 }
 
 std::optional<double> days_between(const std::string& from_utc, const std::string& to_utc) {

@@ -22,8 +22,8 @@ enum class CheckStep {
     sensors,       // connected and healthy
     robots,        // connected, identity known
     calibrations,  // every sensor's in use: good or usable, of this device, fresh
-    taught,        // every enabled spot has its reference
-    frozen,        // every enabled spot's contour stands still
+    taught,        // every enabled spot has its reference, where its feature was
+    frozen,        // every enabled spot's contour stands still, within the required 3 sigma
     observable,    // every region, within the required 3 sigma
     zero_shift,    // the unmoved part reads zero
     known_shift,   // displacements were recovered within the required 3 sigma, over the required range
@@ -75,6 +75,16 @@ Expected<void> gather(const ProjectFile& file, Facts& facts);
 
 // In a project with part types a step is done when it is for each of them; else the first that it is not for speaks.
 std::vector<CheckItem> checklist(const Project& project, const Facts& facts);
+
+// What is open of one spot in the steps `taught` and `frozen`; nullopt: nothing. `frozen` asks for an accepted pass of the
+// spot as it stands, whose expected error and tolerance lie within Requirements::sigma3_mm.
+std::optional<CheckItem> taught_open(const Project& project, const Spot& spot);
+std::optional<CheckItem> frozen_open(const Project& project, const Facts& facts, const Spot& spot);
+// Whether a pass judged by it says less than the project requires.
+bool widened_tolerance(const Project& project, double tolerance_mm);
+// How far the reference lies beside the point that the spot's feature has in the profile kept with it, along the axes that
+// count; 0 within what robot and feature scatter, and where the profile does not show the feature.
+double reference_beside_mm(const Project& project, const Spot& spot);
 
 // The newest evidence of a kind; of a spot for FrozenContour. nullptr when there is none.
 template <class T>

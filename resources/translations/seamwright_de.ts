@@ -280,7 +280,7 @@
     </message>
     <message>
         <source>For the region</source>
-        <translation>Für die Region</translation>
+        <translation>Für den Korrekturbereich</translation>
     </message>
     <message>
         <source>Its limits and free degrees hold, and it takes the spots</source>
@@ -440,7 +440,7 @@
     </message>
     <message>
         <source>%1 spots are in region %2, from the drawing: confirm each on the part (step Teach) before anything is pushed.</source>
-        <translation>%1 Messstellen sind in Region %2, aus der Zeichnung: Bestätigen Sie jede am Teil (Schritt Einlernen), bevor etwas übertragen wird.</translation>
+        <translation>%1 Messstellen sind im Korrekturbereich %2, aus der Zeichnung: Bestätigen Sie jede am Teil (Schritt Einlernen), bevor etwas übertragen wird.</translation>
     </message>
     <message>
         <source>Back along the edge</source>
@@ -2360,6 +2360,14 @@
         <source>pose</source>
         <translation>Pose</translation>
     </message>
+    <message>
+        <source>frozen at a widened tolerance</source>
+        <translation>steht still bei erweiterter Toleranz</translation>
+    </message>
+    <message>
+        <source>Tolerance %1 mm, required are %2 mm</source>
+        <translation>Toleranz %1 mm, gefordert sind %2 mm</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::AlignView</name>
@@ -2606,6 +2614,14 @@
         <source>Every profile of the pass over the travel; the buttons above change the picture</source>
         <translation>Alle Profile der Durchfahrt über dem Weg; die Knöpfe darüber wechseln das Bild</translation>
     </message>
+    <message>
+        <source>WIDENED</source>
+        <translation>ERWEITERT</translation>
+    </message>
+    <message>
+        <source>The contour stands still within a tolerance that is wider than the project requires.</source>
+        <translation>Die Kontur steht innerhalb einer Toleranz still, die weiter ist, als das Projekt verlangt.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::BudgetPanel</name>
@@ -2730,6 +2746,18 @@
 </context>
 <context>
     <name>seamwright::CalibrationDesk</name>
+    <message>
+        <source>State the robot&apos;s repeatability</source>
+        <translation>Wiederholgenauigkeit des Roboters angeben</translation>
+    </message>
+    <message>
+        <source>Begin anew</source>
+        <translation>Neu beginnen</translation>
+    </message>
+    <message>
+        <source>A circle, but not yet twice at the same place: hold the sensor still.</source>
+        <translation>Ein Kreis, aber noch nicht zweimal an derselben Stelle: den Sensor stillhalten.</translation>
+    </message>
     <message>
         <source>Trying the conventions of poses</source>
         <translation>Konventionen der Posen werden versucht</translation>
@@ -3083,10 +3111,6 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <translation>Belichtung und Trigger von Sensor %1</translation>
     </message>
     <message>
-        <source>New name</source>
-        <translation>Neuer Name</translation>
-    </message>
-    <message>
         <source>settings</source>
         <translation>Einstellungen</translation>
     </message>
@@ -3345,6 +3369,56 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
 <context>
     <name>seamwright::GuidedPage</name>
     <message>
+        <source>Puts these captures aside, on disk, and begins with none; undo brings them back</source>
+        <translation>Legt diese Aufnahmen auf der Platte beiseite und beginnt mit keiner; Rückgängig bringt sie zurück</translation>
+    </message>
+    <message>
+        <source>The robot&apos;s repeatability, one standard deviation of an arrival in each axis: about a third of the RP of its data sheet. 0: not stated.</source>
+        <translation>Die Wiederholgenauigkeit des Roboters, eine Standardabweichung einer Ankunft in jeder Achse: etwa ein Drittel des RP seines Datenblatts. 0: nicht angegeben.</translation>
+    </message>
+    <message>
+        <source>Repeatability of its place</source>
+        <translation>Wiederholgenauigkeit, Ort</translation>
+    </message>
+    <message>
+        <source>Repeatability of its turn</source>
+        <translation>Wiederholgenauigkeit, Drehung</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n more pose(s)</source>
+        <translation>
+            <numerusform>noch %n Pose</numerusform>
+            <numerusform>noch %n Posen</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>%1: %2</source>
+        <translation>%1: %2</translation>
+    </message>
+    <message>
+        <source>Every capture is needed to solve with: take or load more.</source>
+        <translation>Zum Lösen wird jede Aufnahme gebraucht: mehr aufnehmen oder laden.</translation>
+    </message>
+    <message>
+        <source>Nothing is seen where the second pose should be: the first capture was probably not the target. Remove it, or correct the mounting from the drawing.</source>
+        <translation>Wo die zweite Pose sein soll, ist nichts zu sehen: die erste Aufnahme war wohl nicht das Ziel. Sie entfernen, oder die Montage laut Zeichnung berichtigen.</translation>
+    </message>
+    <message>
+        <source>%1. It sees the simulated target until this page is left.</source>
+        <translation>%1. Er sieht das simulierte Ziel, bis diese Seite verlassen wird.</translation>
+    </message>
+    <message>
+        <source>Every view has been taken and the solution does not serve yet: state the robot&apos;s repeatability, leave out what stands out, or jog to other places and capture there.</source>
+        <translation>Jede Ansicht ist aufgenommen und die Lösung genügt noch nicht: die Wiederholgenauigkeit des Roboters angeben, auslassen, was herausfällt, oder an andere Stellen verfahren und dort aufnehmen.</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n pose(s) agree, but the solution is %1: %2</source>
+        <translation>
+            <numerusform>%n Pose stimmt überein, aber die Lösung ist %1: %2</numerusform>
+            <numerusform>%n Posen stimmen überein, aber die Lösung ist %1: %2</numerusform>
+        </translation>
+    </message>
+    <message>
         <source>Capture %1 of %2</source>
         <translation>Aufnahme %1 von %2</translation>
     </message>
@@ -3563,10 +3637,6 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>Begin anew</source>
         <translation>Neu beginnen</translation>
-    </message>
-    <message>
-        <source>Puts these captures aside, on disk, and begins with none</source>
-        <translation>Legt diese Aufnahmen auf der Platte beiseite und beginnt ohne</translation>
     </message>
     <message>
         <source>Data (*.json)</source>
@@ -4459,6 +4529,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <source>Fit a panel...</source>
         <translation>Anbauteil einpassen...</translation>
     </message>
+    <message>
+        <source>A push waits for your answer: go to Run</source>
+        <translation>Eine Übertragung wartet auf Ihre Antwort: zum Lauf</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::ManualWindow</name>
@@ -4578,6 +4652,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>refused: %1</source>
         <translation>abgelehnt: %1</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is refused: %2. %3 stays.</source>
+        <translation>„%1“ wird abgelehnt: %2. %3 bleibt.</translation>
     </message>
 </context>
 <context>
@@ -4768,7 +4846,7 @@ hier keine Referenz</translation>
     <name>seamwright::ProvePage</name>
     <message>
         <source>What makes the region uncertain</source>
-        <translation>Woraus die Unsicherheit der Region besteht</translation>
+        <translation>Woraus die Unsicherheit des Korrekturbereichs besteht</translation>
     </message>
     <message>
         <source>Runs</source>
@@ -4801,10 +4879,6 @@ hier keine Referenz</translation>
     <message>
         <source>3 sigma</source>
         <translation>3 Sigma</translation>
-    </message>
-    <message>
-        <source>Stated 3 sigma</source>
-        <translation>Angegeben</translation>
     </message>
     <message>
         <source>Mean and scatter over the zero-shift runs</source>
@@ -5064,6 +5138,10 @@ Die Basisverschiebung der Steuerung setzen auf
 X %2  Y %3  Z %4 mm
 A %5  B %6  C %7 Grad</translation>
     </message>
+    <message>
+        <source>Stated</source>
+        <translation>Angegeben</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::RegionsPage</name>
@@ -5101,11 +5179,11 @@ A %5  B %6  C %7 Grad</translation>
     </message>
     <message>
         <source>Encircle spots</source>
-        <translation>Messstellen umfahren</translation>
+        <translation>Messstellen einkreisen</translation>
     </message>
     <message>
         <source>Draw a line around spots in the 3D view: they become the chosen region&apos;s, or a region of their own where none is chosen. The right mouse button does the same at any time.</source>
-        <translation>Im 3D-Bild eine Linie um Messstellen ziehen: sie werden die der gewählten Region oder, wo keine gewählt ist, eine eigene Region. Die rechte Maustaste tut jederzeit dasselbe.</translation>
+        <translation>Im 3D-Bild eine Linie um Messstellen ziehen: sie werden die des gewählten Korrekturbereichs oder, wo keiner gewählt ist, ein eigener Korrekturbereich. Die rechte Maustaste tut jederzeit dasselbe.</translation>
     </message>
     <message>
         <source>A region is what moves as one piece: its spots tell where it has gone, its frame is what the robot gets.</source>
@@ -5130,10 +5208,6 @@ A %5  B %6  C %7 Grad</translation>
     <message>
         <source>Rename region</source>
         <translation>Korrekturbereich umbenennen</translation>
-    </message>
-    <message>
-        <source>New name</source>
-        <translation>Neuer Name</translation>
     </message>
     <message>
         <source>Remove</source>
@@ -5665,7 +5739,7 @@ ausgelassen</translation>
     </message>
     <message>
         <source>Displacement per region with its sigma, and what was written</source>
-        <translation>Verschiebung je Bereich mit Sigma, und was geschrieben wurde</translation>
+        <translation>Verschiebung je Korrekturbereich mit Sigma, und was geschrieben wurde</translation>
     </message>
     <message>
         <source>%1, refused</source>
@@ -5685,6 +5759,34 @@ ausgelassen</translation>
             <numerusform>%n abgelehnt</numerusform>
             <numerusform>%n abgelehnt</numerusform>
         </translation>
+    </message>
+    <message>
+        <source>Measuring ...</source>
+        <translation>Wird gemessen ...</translation>
+    </message>
+    <message>
+        <source>Not measured.</source>
+        <translation>Nicht gemessen.</translation>
+    </message>
+    <message>
+        <source>Left out, because they contradict the others: %1</source>
+        <translation>Weggelassen, weil sie den anderen widersprechen: %1</translation>
+    </message>
+    <message>
+        <source>Shown: run %1 of %2</source>
+        <translation>Gezeigt: Lauf %1 vom %2</translation>
+    </message>
+    <message>
+        <source>left out, contradicts by %1 mm</source>
+        <translation>weggelassen, widerspricht um %1 mm</translation>
+    </message>
+    <message>
+        <source>run %1</source>
+        <translation>Lauf %1</translation>
+    </message>
+    <message>
+        <source>The project was changed while the push waited for an answer: nothing was pushed. Measure again.</source>
+        <translation>Das Projekt wurde geändert, während die Übertragung auf eine Antwort wartete: nichts wurde übertragen. Neu messen.</translation>
     </message>
 </context>
 <context>
@@ -5940,7 +6042,7 @@ ausgelassen</translation>
     </message>
     <message>
         <source>Next: regions</source>
-        <translation>Weiter: Regionen</translation>
+        <translation>Weiter: Bereiche</translation>
     </message>
     <message>
         <source>Confirm</source>
@@ -5953,6 +6055,10 @@ ausgelassen</translation>
     <message>
         <source>From the drawing: connect, then confirm it.</source>
         <translation>Aus der Zeichnung: verbinden, dann bestätigen.</translation>
+    </message>
+    <message>
+        <source>Its reference does not lie at its feature: measure it again.</source>
+        <translation>Ihre Referenz liegt nicht an ihrem Merkmal: neu messen.</translation>
     </message>
 </context>
 <context>
@@ -6516,10 +6622,6 @@ und %1 weitere</translation>
         <translation>Referenz durch Klick</translation>
     </message>
     <message>
-        <source>Click the reference point in the live profile; it need not lie on the contour</source>
-        <translation>Den Referenzpunkt im laufenden Profil anklicken; er muss nicht auf der Kontur liegen</translation>
-    </message>
-    <message>
         <source>Reference</source>
         <translation>Referenz</translation>
     </message>
@@ -6566,10 +6668,6 @@ und %1 weitere</translation>
     <message>
         <source>Rename spot</source>
         <translation>Messstelle umbenennen</translation>
-    </message>
-    <message>
-        <source>New name</source>
-        <translation>Neuer Name</translation>
     </message>
     <message>
         <source>feature</source>
@@ -6651,6 +6749,10 @@ und %1 weitere</translation>
         <source>Another part type&apos;s: measure it on a part of this type.</source>
         <translation>Von einem anderen Teiletyp: an einem Teil dieses Typs messen.</translation>
     </message>
+    <message>
+        <source>Click the template&apos;s reference point in the live profile; it need not lie on the contour. Measure the reference anew then.</source>
+        <translation>Im laufenden Profil den Referenzpunkt der Vorlage anklicken; er muss nicht auf der Kontur liegen. Danach die Referenz neu messen.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::TrendChart</name>
@@ -6709,7 +6811,7 @@ und %1 weitere</translation>
     </message>
     <message>
         <source>Whose spots are measured and whose regions are pushed; those of the other types stay</source>
-        <translation>Wessen Messstellen gemessen und wessen Bereiche übertragen werden; die der anderen Typen bleiben</translation>
+        <translation>Wessen Messstellen gemessen und wessen Korrekturbereiche übertragen werden; die der anderen Typen bleiben</translation>
     </message>
 </context>
 <context>
@@ -6862,7 +6964,7 @@ und %1 weitere</translation>
     </message>
     <message>
         <source>Region</source>
-        <translation>Region</translation>
+        <translation>Korrekturbereich</translation>
     </message>
     <message>
         <source>Points</source>
@@ -6878,7 +6980,7 @@ und %1 weitere</translation>
     </message>
     <message>
         <source>What each region does to the path</source>
-        <translation>Was jede Region mit dem Pfad macht</translation>
+        <translation>Was jeder Korrekturbereich mit dem Pfad macht</translation>
     </message>
     <message>
         <source>Program for</source>
@@ -7788,6 +7890,33 @@ Spalt / Bündigkeit</translation>
     <message>
         <source>Learn it anew, or look at the sensors&apos; calibrations.</source>
         <translation>Sie neu lernen, oder die Kalibrierungen der Sensoren ansehen.</translation>
+    </message>
+</context>
+<context>
+    <name>RenameDialog</name>
+    <message>
+        <source>New name</source>
+        <translation>Neuer Name</translation>
+    </message>
+    <message>
+        <source>At most 64 signs, of its own</source>
+        <translation>Höchstens 64 Zeichen, kein zweites Mal</translation>
+    </message>
+    <message>
+        <source>Rename</source>
+        <translation>Umbenennen</translation>
+    </message>
+    <message>
+        <source>Undo brings the old name back</source>
+        <translation>Rückgängig bringt den alten Namen zurück</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>Abbrechen</translation>
+    </message>
+    <message>
+        <source>The name stays</source>
+        <translation>Der Name bleibt</translation>
     </message>
 </context>
 </TS>

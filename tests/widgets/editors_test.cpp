@@ -49,9 +49,17 @@ TEST(NumberBox, TakesPointAndCommaAndShowsThePoint) {
     EXPECT_EQ(box.text(), "2.50 mm");
     EXPECT_DOUBLE_EQ(type("3.25"), 3.25);
     EXPECT_DOUBLE_EQ(type("10"), 10);
-    EXPECT_DOUBLE_EQ(type("x7"), 7) << "letters do not get in";
-    type("90");
-    EXPECT_LE(box.value(), 20);
+    // What is no number within the range is refused as a whole and in words: no part of it is taken.
+    for (const char* text : {"x7", "1e300", "1.234,5", "90", "0.05", "-"}) {
+        EXPECT_DOUBLE_EQ(type(text), 10) << text;
+        EXPECT_FALSE(box.reason().isEmpty()) << text;
+        EXPECT_EQ(box.text(), "10.00 mm") << text;
+    }
+    EXPECT_DOUBLE_EQ(type("1e1"), 10);
+    EXPECT_DOUBLE_EQ(type("2e-1"), 0.2);
+    EXPECT_TRUE(box.reason().isEmpty());
+    type("1e300");
+    EXPECT_TRUE(box.reason().contains("0.10 .. 20.00 mm")) << box.reason().toStdString();
     box.stepDown();
     EXPECT_GE(box.value(), 0.1);
     QLocale::setDefault(QLocale::c());

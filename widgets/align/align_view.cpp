@@ -188,7 +188,7 @@ void AlignView::set_recording(std::span<const TravelProfile> pass) {
 }
 
 void AlignView::set_result(std::span<const TravelProfile> pass, const AlignmentResult& result,
-                           const AlignmentOptions& options) {
+                           const AlignmentOptions& options, bool widened) {
     impl_->stack->set_pass(pass);
     impl_->offsets->set_data(result, options);
     const auto angle = [](double degrees, double sigma) {
@@ -220,8 +220,14 @@ void AlignView::set_result(std::span<const TravelProfile> pass, const AlignmentR
     const QString cure = shown(result.cure);
     switch (result.status) {
         case AlignmentStatus::frozen:
-            impl_->say(tr("FROZEN"), tr("The contour stands still within the tolerance."), Impl::Mood::good,
-                       palette());
+            if (widened)
+                impl_->say(tr("WIDENED"),
+                           tr("The contour stands still within a tolerance that is wider than the project "
+                              "requires."),
+                           Impl::Mood::attention, palette());
+            else
+                impl_->say(tr("FROZEN"), tr("The contour stands still within the tolerance."),
+                           Impl::Mood::good, palette());
             break;
         case AlignmentStatus::drifting:
             impl_->say(tr("DRIFTING"),

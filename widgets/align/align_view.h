@@ -22,9 +22,10 @@ class AlignView : public QWidget {
     explicit AlignView(QWidget* parent = nullptr);
     ~AlignView() override;
 
-    // The judged pass. `pass` and `result.offsets` are in the same order; options carry tolerance and jitter.
+    // The judged pass. `pass` and `result.offsets` are in the same order; options carry tolerance and jitter. `widened`:
+    // a tolerance beyond what is required, at which standing still is no good news.
     void set_result(std::span<const TravelProfile> pass, const AlignmentResult& result,
-                    const AlignmentOptions& options);
+                    const AlignmentOptions& options, bool widened = false);
     // While the pass is being recorded: profiles so far, not judged yet.
     void set_recording(std::span<const TravelProfile> pass);
     // The profile the sensor sees now, drawn thin over the frozen one (thick). An empty profile removes it.

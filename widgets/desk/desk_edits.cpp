@@ -6,6 +6,7 @@
 #include "devices/registry.h"
 #include "devices/simulated/scene/mesh_file.h"
 #include "projects/calibrate/session/use.h"
+#include "projects/file/id_length.h"
 #include "projects/file/project_json.h"
 #include "projects/measure/fields.h"
 #include "projects/measure/measure.h"
@@ -16,9 +17,13 @@ namespace {
 
 Expected<void> check_id(const std::string& id) {
     if (id.empty()) return input_error("the name is empty", {}, "give it a name");
-    if (id.size() > 64) return input_error("the name is longer than 64 signs", {}, "shorten it");
+    if (is_too_long(id)) return input_error("the name is longer than 64 signs", {}, "shorten it");
     return {};
 }
+
+// As the file asks for it with the next save.
+template <class T>
+constexpr Deed kDeedOf = std::is_same_v<T, Region> ? Deed::limits : Deed::teach;
 
 template <class T>
 Expected<void> valid(const Project&, const T&) {
@@ -109,7 +114,7 @@ Expected<void> Desk::together(const QString& text, const std::function<Expected<
 
 template <class T>
 Expected<void> Desk::add(T thing, int at) {
-    SEAM_OK(may(Deed::teach));
+    SEAM_OK(may(kDeedOf<T>));
     SEAM_OK(check_id(thing.id));
     if (index_of<T>(project_, thing.id) >= 0)
         return input_error(Text("the name \"{}\" is used already", thing.id), {}, "choose another");
@@ -122,7 +127,7 @@ Expected<void> Desk::add(T thing, int at) {
 
 template <class T>
 Expected<void> Desk::remove(const std::string& id) {
-    SEAM_OK(may(Deed::teach));
+    SEAM_OK(may(kDeedOf<T>));
     const int at = index_of<T>(project_, id);
     if (at < 0) return input_error(Text("there is no \"{}\"", id));
     SEAM_OK(removable<T>(project_, id));
@@ -132,7 +137,7 @@ Expected<void> Desk::remove(const std::string& id) {
 
 template <class T>
 Expected<void> Desk::rename(const std::string& from, const std::string& to) {
-    SEAM_OK(may(Deed::teach));
+    SEAM_OK(may(kDeedOf<T>));
     const int at = index_of<T>(project_, from);
     if (at < 0) return input_error(Text("there is no \"{}\"", from));
     if (from == to) return {};
@@ -151,7 +156,7 @@ Expected<void> Desk::rename(const std::string& from, const std::string& to) {
 
 template <class T>
 Expected<void> Desk::move(const std::string& id, int to) {
-    SEAM_OK(may(Deed::teach));
+    SEAM_OK(may(kDeedOf<T>));
     const int at = index_of<T>(project_, id);
     if (at < 0) return input_error(Text("there is no \"{}\"", id));
     const int last = static_cast<int>(list_of<T>(project_).size()) - 1;
@@ -164,7 +169,7 @@ Expected<void> Desk::move(const std::string& id, int to) {
 
 template <class T>
 Expected<void> Desk::edit(const T& after, const QString& what) {
-    SEAM_OK(may(Deed::teach));
+    SEAM_OK(may(kDeedOf<T>));
     const int at = index_of<T>(project_, after.id);
     if (at < 0) return input_error(Text("there is no \"{}\"", after.id));
     const T& before = list_of<T>(project_)[static_cast<std::size_t>(at)];
@@ -198,6 +203,7 @@ template Expected<void> Desk::add<Calibration>(Calibration, int);
 template std::string Desk::free_id<Calibration>(const std::string&) const;
 
 Expected<void> Desk::set_spot_enabled(const std::string& id, bool enabled) {
+    SEAM_OK(may(Deed::teach));
     const int at = index_of<Spot>(project_, id);
     if (at < 0) return input_error(Text("there is no spot \"{}\"", id));
     if (project_.spots[static_cast<std::size_t>(at)].enabled == enabled) return {};
@@ -230,6 +236,7 @@ Expected<void> Desk::set_region_field(const RegionId& id, const std::string& fie
 }
 
 Expected<void> Desk::use_calibration(const SensorId& sensor_id, const CalibrationId& calibration_id) {
+    SEAM_OK(may(Deed::teach));
     const int at = index_of<SensorSetup>(project_, sensor_id.text());
     if (at < 0) return input_error(Text("there is no sensor \"{}\"", sensor_id.text()));
     const SensorSetup& sensor = project_.sensors[static_cast<std::size_t>(at)];
@@ -323,6 +330,7 @@ Expected<void> Desk::edit_project(const std::function<void(Project&)>& change, c
 }
 
 Expected<std::vector<MovedSpot>> Desk::reteach(const Exchange& exchange) {
+    SEAM_OK(may(Deed::teach));
     SEAM_TRY(auto retaught, after_exchange(project_, exchange));
     push(std::make_unique<CmdProjectReplace>(editor(), project_, std::move(retaught.project),
                                              DeskCommand::tr("Take up again after an exchange")));

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "projects/measure/measure.h"
+#include "projects/proof/checklist.h"
 #include "projects/station/teach.h"
 #include "widgets/editors/number_box.h"
 #include "widgets/shown_text.h"
@@ -38,7 +39,15 @@ AlignPage::AlignPage(Desk& desk, const Views& views)
     start_ = make_button("start_pass", "play", tr("Run entry -> exit"),
                          tr("The robot goes along the contour and stops at every step; nothing is written"),
                          [this] { start(); });
-    box().addLayout(make_row({start_}));
+    accept_ =
+        make_button("accept_pass", "check", tr("Accept"),
+                    tr("Keeps jitter window and the contour's curve with the spot"), [this] { accept(); });
+    adopt_ = make_button(
+        "adopt_pose", "rotate", tr("Adopt turned pose"),
+        tr("Turns the taught pose about the reference point by the rotation that cures it; teach again then"),
+        [this] { adopt(); });
+    // Above the verdict, whose length changes: all three are in sight of a small window.
+    box().addLayout(make_row({start_, accept_, adopt_}));
     verdict_ = make_text({});
     verdict_->setObjectName("align_verdict");
     QFont font = verdict_->font();
@@ -48,14 +57,6 @@ AlignPage::AlignPage(Desk& desk, const Views& views)
     numbers_ = make_text({});
     numbers_->setObjectName("align_numbers");
     box().addWidget(numbers_);
-    accept_ =
-        make_button("accept_pass", "check", tr("Accept"),
-                    tr("Keeps jitter window and the contour's curve with the spot"), [this] { accept(); });
-    adopt_ = make_button(
-        "adopt_pose", "rotate", tr("Adopt turned pose"),
-        tr("Turns the taught pose about the reference point by the rotation that cures it; teach again then"),
-        [this] { adopt(); });
-    box().addLayout(make_row({accept_, adopt_}));
     box().addStretch(1);
 
     connect(&desk_.worker(), &StationWorker::passed, this,
@@ -143,11 +144,15 @@ void AlignPage::show_result() {
                                  : tr("Choose a spot."));
         return;
     }
-    views_.align->set_result(pass_->pass.profiles, pass_->result, pass_->options);
+    const bool widened = widened_tolerance(desk_.project(), pass_->options.tolerance_mm);
+    views_.align->set_result(pass_->pass.profiles, pass_->result, pass_->options, widened);
     const AlignmentResult& r = pass_->result;
     switch (r.status) {
         case AlignmentStatus::frozen:
-            set_verdict(*verdict_, tr("FROZEN"), Tone::good);
+            if (widened)
+                set_verdict(*verdict_, tr("frozen at a widened tolerance"), Tone::attention);
+            else
+                set_verdict(*verdict_, tr("FROZEN"), Tone::good);
             break;
         case AlignmentStatus::drifting:
             set_verdict(*verdict_, tr("DRIFTING"), Tone::alarm);
@@ -167,6 +172,9 @@ void AlignPage::show_result() {
             .arg(number(r.yaw_deg, 3), number(r.pitch_deg, 3),
                  std::isfinite(r.radius_mm) ? number(r.radius_mm, 0) + QStringLiteral(" mm") : tr("straight"),
                  number(r.expected_error_mm, 3));
+    text += "\n" + tr("Tolerance %1 mm, required are %2 mm")
+                       .arg(number(pass_->options.tolerance_mm, 3),
+                            number(desk_.project().requirements.sigma3_mm, 3));
     if (!pass_->curve)
         text += "\n" + tr("The feature was found in too few profiles to learn the contour's curve.");
     if (!r.cure.empty()) text += "\n" + tr("To cure: %1").arg(shown(r.cure));

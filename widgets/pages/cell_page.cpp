@@ -4,7 +4,6 @@
 
 #include <QFileDialog>
 #include <QFileInfo>
-#include <QInputDialog>
 #include <QMenu>
 #include <QPointer>
 
@@ -15,6 +14,7 @@
 #include "projects/measure/measure.h"
 #include "widgets/editors/list_habits.h"
 #include "widgets/editors/parameter_editor.h"
+#include "widgets/pages/parts/rename_dialog.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
@@ -436,14 +436,10 @@ void CellPage::remove_device() {
 
 void CellPage::rename_device() {
     if (chosen().empty()) return;
-    bool ok = false;
-    const QString name = QInputDialog::getText(this, tr("Rename"), tr("New name"), QLineEdit::Normal,
-                                               QString::fromStdString(chosen()), &ok);
-    if (!ok) return;
-    if (sensor_chosen())
-        done(desk_.rename<SensorSetup>(chosen(), name.trimmed().toStdString()));
-    else
-        done(desk_.rename<RobotSetup>(chosen(), name.trimmed().toStdString()));
+    ask_name(this, tr("Rename"), chosen(),
+             [this, from = chosen(), sensor = sensor_chosen()](const std::string& to) {
+                 return sensor ? desk_.rename<SensorSetup>(from, to) : desk_.rename<RobotSetup>(from, to);
+             });
 }
 
 void CellPage::apply() {

@@ -83,7 +83,7 @@ void ProvePage::make_zero_shift() {
     add_field(box(), tr("Region"), region_, tr("The region that the tables and the charts show"));
     connect(region_, &QComboBox::textActivated, this,
             [this](const QString& id) { desk_.selection().select_region(id.toStdString()); });
-    zero_table_ = make_table("zero_table", {tr("Direction"), tr("Mean"), tr("3 sigma"), tr("Stated 3 sigma")},
+    zero_table_ = make_table("zero_table", {tr("Direction"), tr("Mean"), tr("3 sigma"), tr("Stated")},
                              tr("Mean and scatter over the zero-shift runs"));
     zero_table_->setMinimumHeight(7 * 34);
     box().addWidget(zero_table_);

@@ -1,6 +1,5 @@
 #include "widgets/pages/regions_page.h"
 
-#include <QInputDialog>
 #include <cmath>
 
 #include "core/geometry/three_two_one.h"
@@ -9,6 +8,7 @@
 #include "projects/proof/forecast.h"
 #include "projects/proof/known_shift.h"
 #include "widgets/editors/list_habits.h"
+#include "widgets/pages/parts/rename_dialog.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
@@ -31,15 +31,13 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
     box().addWidget(list_);
     rename_ = make_button("rename_region", "rename", tr("Rename"), tr("Another name for the region"), [this] {
         if (!region()) return;
-        bool ok = false;
-        const QString name =
-            QInputDialog::getText(this, tr("Rename region"), tr("New name"), QLineEdit::Normal,
-                                  QString::fromStdString(region()->id), &ok);
-        if (ok) done(desk_.rename<Region>(region()->id, name.trimmed().toStdString()));
+        ask_name(this, tr("Rename region"), region()->id, [this, from = region()->id](const std::string& to) {
+            return desk_.rename<Region>(from, to);
+        });
     });
     remove_ = make_button("remove_region", "remove", tr("Remove"), tr("Take the region out; its spots stay"),
                           [this] {
-                              if (region()) done(desk_.remove<Region>(region()->id));
+                              if (region()) done_or_shown(desk_.remove<Region>(region()->id));
                           });
     box().addLayout(make_row(
         {make_button("add_region", "add", tr("Add region"), tr("A further region"),
@@ -95,7 +93,7 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
                 return index_of<Spot>(desk_.project(), a) < index_of<Spot>(desk_.project(), b);
             });
         }
-        done(desk_.edit(r, tr("spots")));
+        done_or_shown(desk_.edit(r, tr("spots")));
     });
     connect(spots_, &QListWidget::currentItemChanged, this, [this](const QListWidgetItem* item) {
         if (!filling_ && item)
@@ -115,7 +113,7 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
             if (!region()) return;
             Region r = *region();
             r.free[static_cast<std::size_t>(i)] = on;
-            if (!done(desk_.edit(r, tr("degrees of freedom")))) refresh();
+            done_or_shown(desk_.edit(r, tr("degrees of freedom")));
         });
         free_[static_cast<std::size_t>(i)] = b;
         grid->addWidget(b, i / 3, i % 3);
@@ -131,7 +129,7 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
         if (!region()) return;
         Region r = *region();
         r.frame_name = frame_->text().trimmed().toStdString();
-        done(desk_.edit(r, tr("frame")));
+        done_or_shown(desk_.edit(r, tr("frame")));
     });
     frame_pose_ = new PoseEditor;
     frame_pose_->setObjectName("frame_pose");
@@ -141,7 +139,7 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
         if (!region()) return;
         Region r = *region();
         r.base_from_frame = frame_pose_->pose();
-        done(desk_.edit(r, tr("frame")));
+        done_or_shown(desk_.edit(r, tr("frame")));
     });
     in->addWidget(frame_pose_);
 
@@ -161,7 +159,7 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
     for (const Field<Region>& f : region_fields()) {
         auto* editor = new ParameterEditor(f.info);
         connect(editor, &ParameterEditor::committed, this, [this, name = f.info.name](double value) {
-            if (region()) done(desk_.set_region_field(RegionId(region()->id), name, value));
+            if (region()) done_or_shown(desk_.set_region_field(RegionId(region()->id), name, value));
         });
         editors_.push_back(editor);
         in->addWidget(editor);
@@ -174,7 +172,7 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
                               r.limits = proven_limits(std::get<KnownShift>(e->what));
                               r.sigma_limit_mm =
                                   std::min(r.sigma_limit_mm, desk_.project().requirements.sigma3_mm / 3);
-                              done(desk_.edit(r, tr("limits")));
+                              done_or_shown(desk_.edit(r, tr("limits")));
                           });
     in->addLayout(make_row({proven_}));
     box().addStretch(1);
@@ -187,7 +185,7 @@ void RegionsPage::add_region(std::vector<std::string> spot_ids) {
     r.base_from_frame = desk_.project().part.base_from_workobject;
     r.spot_ids = std::move(spot_ids);
     const std::string id = r.id;
-    if (done(desk_.add(r))) desk_.selection().select_region(id);
+    if (done_or_shown(desk_.add(r))) desk_.selection().select_region(id);
 }
 
 void RegionsPage::take_encircled(const QStringList& ids) {
@@ -197,7 +195,7 @@ void RegionsPage::take_encircled(const QStringList& ids) {
     if (!region()) return add_region(std::move(spots));
     Region r = *region();
     r.spot_ids = std::move(spots);
-    done(desk_.edit(r, tr("spots")));
+    done_or_shown(desk_.edit(r, tr("spots")));
 }
 
 void RegionsPage::pick_frame() {
@@ -236,7 +234,7 @@ void RegionsPage::picked(const Eigen::Vector3d& workobject_mm) {
     if (!frame) return set_verdict(*pick_said_, shown_error(frame.error()), Tone::attention);
     Region r = *region();
     r.base_from_frame = desk_.project().part.base_from_workobject * *frame;
-    if (done(desk_.edit(r, tr("frame"))))
+    if (done_or_shown(desk_.edit(r, tr("frame"))))
         set_verdict(*pick_said_, tr("The frame stands where it was picked; undo brings the old one back."),
                     Tone::good);
 }

@@ -14,13 +14,27 @@ class RunPage : public StepPage {
   public:
     RunPage(Desk& desk, const Views& views);
     void measure(bool push);
+    // A push waits for an answer here.
+    bool asks() const { return asks_; }
+
+  signals:
+    void asks_changed();
 
   protected:
     void refresh() override;
     void entered() override;
 
   private:
-    void show_run(std::shared_ptr<const RunRecord> run);
+    // Of a measurement that was asked for here, or of one of the history, which says so.
+    enum class Shown { now, earlier };
+    void show_run(std::shared_ptr<const RunRecord> run, Shown when);
+    void show_number(std::int64_t number);  // of the history
+    void show_verdict(const RunRecord& run, const QStringList& left_out, Shown when);
+    QStringList show_spots(const RunRecord& run);  // ids of those that a correction left out
+    void show_nothing(const QString& verdict, Tone tone);
+    void begin();  // of a job: what is shown is of no part any more
+    void ended();  // without a run
+    void set_asks(bool asks);
     void ask(const std::shared_ptr<const RunRecord>& judged);
     void answer(bool yes);
     void show_history();
@@ -37,6 +51,9 @@ class RunPage : public StepPage {
     std::shared_ptr<const RunRecord> shown_;
     std::vector<RunSummary> summaries_;
     std::vector<std::int64_t> charted_;  // runs of the trend, in its order
+    enum class Job { none, measuring, failed } job_ = Job::none;
+    bool asks_ = false;
+    bool voided_ = false;  // the question, by an edit
 };
 
 }  // namespace seamwright

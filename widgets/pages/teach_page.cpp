@@ -1,11 +1,12 @@
 #include "widgets/pages/teach_page.h"
 
-#include <QInputDialog>
 #include <cmath>
 
 #include "core/features/kinds/feature_registry.h"
 #include "projects/measure/fields.h"
 #include "projects/measure/measure.h"
+#include "widgets/pages/parts/rename_dialog.h"
+#include "widgets/pages/teach_live.h"
 #include "widgets/shown_text.h"
 #include "widgets/words.h"
 
@@ -74,15 +75,7 @@ void TeachPage::listen_to_profile() {
         if (isVisible()) take_template(w);
     });
     connect(views_.profile, &ProfilePlot::reference_clicked, this, [this](const QPointF& p) {
-        if (!isVisible() || !spot()) return;
-        Spot s = *spot();
-        if (s.feature.kind == "template") {
-            s.feature.template_reference_mm = {p.x(), p.y()};
-        }
-        s.reference_mm = {p.x(), 0, p.y()};
-        s.reference_arrivals = 1;
-        done(desk_.edit(s, tr("reference point")));
-        views_.profile->set_tool(ProfilePlot::Tool::inspect);
+        if (isVisible()) take_landmark(p);
     });
 }
 
@@ -94,7 +87,7 @@ void TeachPage::take_reference(const TaughtSpot& taught) {
         done(tl::unexpected(after.error()));
         return;
     }
-    if (done(desk_.edit(*after, tr("reference")))) {
+    if (done_or_shown(desk_.edit(*after, tr("reference")))) {
         spread_of_ = *after;
         spread_->setText(tr("Spread of %1 measurements: x %2 mm, z %3 mm (1 sigma); %4 left out")
                              .arg(taught.measurements.size())
@@ -125,7 +118,7 @@ void TeachPage::take_confirmed(const Confirmation& found) {
         after.reference_profile = made->reference_profile;
         after.reference_arrivals = made->reference_arrivals;
         after.reference_state = made->reference_state;
-        if (!done(desk_.edit(after, tr("confirmed on the part")))) return;
+        if (!done_or_shown(desk_.edit(after, tr("confirmed on the part")))) return;
         spread_of_ = after;
         spread_->setText(tr("Shift against the drawing: x %1 mm, z %2 mm")
                              .arg(number(c.shift_mm.x(), 3), number(c.shift_mm.y(), 3)));
@@ -193,6 +186,8 @@ void TeachPage::refresh() {
         kind_help_->setText(shown(Text::chosen(kind->help)));
     window_->setVisible(s->feature.kind == "template");
     pick_->setVisible(s->feature.kind != "template");
+    click_->setVisible(s->feature.kind == "template");
+    if (isVisible() && s->feature.kind != "template") forget_tool();
     light_->refresh(s);
     show_parameters(*s);
     confirm_->setVisible(s->reference_state == ReferenceState::from_drawing &&
@@ -238,8 +233,14 @@ void TeachPage::show_parameters(const Spot& s) {
         e->set_value(parameter(s.feature.parameters, kind->parameters, e->info().name));
 }
 
+void TeachPage::forget_tool() {
+    const auto tool = views_.profile->tool();
+    if (tool == ProfilePlot::Tool::window || tool == ProfilePlot::Tool::reference)
+        views_.profile->set_tool(ProfilePlot::Tool::inspect);
+}
+
 bool TeachPage::change(const Spot& after, const QString& what) {
-    return done(desk_.edit(with_reference_of(*spot(), after), what));
+    return done_or_shown(desk_.edit(with_reference_of(*spot(), after), what));
 }
 
 void TeachPage::add_spot() {
@@ -260,7 +261,7 @@ void TeachPage::add_spot() {
     for (const RobotState& r : desk_.station().robots)
         if (r.id == s.robot_id && r.base_from_flange) s.base_from_flange = *r.base_from_flange;
     const std::string id = s.id;
-    if (done(desk_.add(std::move(s)))) desk_.selection().select_spot(id);
+    if (done_or_shown(desk_.add(std::move(s)))) desk_.selection().select_spot(id);
 }
 
 void TeachPage::duplicate_spot() {
@@ -269,15 +270,13 @@ void TeachPage::duplicate_spot() {
     s.id = desk_.free_id<Spot>("S");
     const std::string id = s.id;
     const int at = index_of<Spot>(desk_.project(), spot()->id) + 1;
-    if (done(desk_.add(std::move(s), at))) desk_.selection().select_spot(id);
+    if (done_or_shown(desk_.add(std::move(s), at))) desk_.selection().select_spot(id);
 }
 
 void TeachPage::rename_spot() {
     if (!spot()) return;
-    bool ok = false;
-    const QString name = QInputDialog::getText(this, tr("Rename spot"), tr("New name"), QLineEdit::Normal,
-                                               QString::fromStdString(spot()->id), &ok);
-    if (ok) done(desk_.rename<Spot>(spot()->id, name.trimmed().toStdString()));
+    ask_name(this, tr("Rename spot"), spot()->id,
+             [this, from = spot()->id](const std::string& to) { return desk_.rename<Spot>(from, to); });
 }
 
 std::optional<Pose> TeachPage::present_pose() {
@@ -304,7 +303,7 @@ void TeachPage::add_via() {
     Spot s = *spot();
     const int at = via_->currentRow() < 0 ? static_cast<int>(s.via.size()) : via_->currentRow() + 1;
     s.via.insert(s.via.begin() + at, *pose);
-    if (done(desk_.edit(s, tr("via points")))) via_->setCurrentRow(at);
+    if (done_or_shown(desk_.edit(s, tr("via points")))) via_->setCurrentRow(at);
 }
 
 void TeachPage::set_kind(const QString& kind) {
@@ -346,16 +345,35 @@ void TeachPage::picked(const QPointF& point) {
 void TeachPage::take_template(const QRectF& window) {
     const Spot* s = spot();
     if (!s || s->feature.kind != "template") return;
-    const auto snapshot = desk_.live().latest(s->sensor_id);
-    const auto after = with_template(*s, snapshot ? snapshot->profile : Profile(),
-                                     Eigen::AlignedBox2d(Eigen::Vector2d(window.left(), window.top()),
-                                                         Eigen::Vector2d(window.right(), window.bottom())));
+    const auto live = live_profile(desk_, s->sensor_id);
+    const auto after =
+        live ? with_template(*s, (*live)->profile,
+                             Eigen::AlignedBox2d(Eigen::Vector2d(window.left(), window.top()),
+                                                 Eigen::Vector2d(window.right(), window.bottom())))
+             : Expected<Spot>(tl::unexpected(live.error()));
     if (!after) {
         done(tl::unexpected(after.error()));
         return;
     }
     change(*after, tr("template"));
     views_.profile->set_tool(ProfilePlot::Tool::inspect);
+}
+
+// A new landmark is another feature: what was measured of the old one goes with the edit.
+void TeachPage::take_landmark(const QPointF& point) {
+    const Spot* s = spot();
+    if (!s || s->feature.kind != "template") return;
+    const auto clicked = [&]() -> Expected<Spot> {
+        SEAM_TRY(const auto live, live_profile(desk_, s->sensor_id));
+        SEAM_OK(stands_at(desk_, *s));
+        return with_landmark(*s, live->profile, {point.x(), point.y()});
+    };
+    const auto after = clicked();
+    if (!after) {
+        done(tl::unexpected(after.error()));
+        return;
+    }
+    if (change(*after, tr("reference point"))) views_.profile->set_tool(ProfilePlot::Tool::inspect);
 }
 
 }  // namespace seamwright

@@ -53,6 +53,8 @@ class TeachPage : public StepPage {
     void set_kind(const QString& kind);
     void picked(const QPointF& point_mm);
     void take_template(const QRectF& window_mm);
+    void take_landmark(const QPointF& point_mm);
+    void forget_tool();  // a template's, in the live profile
     void show_parameters(const Spot& spot);
 
     SpotHead* spot_head_;

@@ -25,14 +25,16 @@ void TeachPage::make_list() {
     rename_ = make_button("rename_spot", "rename", tr("Rename"), tr("Another name for the spot"),
                           [this] { rename_spot(); });
     up_ = make_button("spot_up", "up", tr("Up"), tr("Measure it one earlier"), [this] {
-        if (spot()) done(desk_.move<Spot>(spot()->id, index_of<Spot>(desk_.project(), spot()->id) - 1));
+        if (spot())
+            done_or_shown(desk_.move<Spot>(spot()->id, index_of<Spot>(desk_.project(), spot()->id) - 1));
     });
     down_ = make_button("spot_down", "down", tr("Down"), tr("Measure it one later"), [this] {
-        if (spot()) done(desk_.move<Spot>(spot()->id, index_of<Spot>(desk_.project(), spot()->id) + 1));
+        if (spot())
+            done_or_shown(desk_.move<Spot>(spot()->id, index_of<Spot>(desk_.project(), spot()->id) + 1));
     });
     remove_ = make_button("remove_spot", "remove", tr("Remove"), tr("Take the spot out; undo brings it back"),
                           [this] {
-                              if (spot()) done(desk_.remove<Spot>(spot()->id));
+                              if (spot()) done_or_shown(desk_.remove<Spot>(spot()->id));
                           });
     box().addLayout(
         make_row({make_button("add_spot", "add", tr("Add spot"), tr("A new spot at the robot's present pose"),
@@ -54,13 +56,13 @@ void TeachPage::make_switches(QVBoxLayout& in) {
     required_->setToolTip(tr("Nothing is pushed when a required spot was not measured"));
     for (QCheckBox* b : {enabled_, required_}) b->setMinimumHeight(style::kTargetPx);
     connect(enabled_, &QCheckBox::clicked, this, [this](bool on) {
-        if (spot()) done(desk_.set_spot_enabled(spot()->id, on));
+        if (spot()) done_or_shown(desk_.set_spot_enabled(spot()->id, on));
     });
     connect(required_, &QCheckBox::clicked, this, [this](bool on) {
         if (!spot()) return;
         Spot s = *spot();
         s.required = on;
-        done(desk_.edit(s, tr("required")));
+        done_or_shown(desk_.edit(s, tr("required")));
     });
     in.addLayout(make_row({enabled_, required_}));
     stop_ = new QCheckBox(tr("Stand still at the trigger"));
@@ -73,7 +75,7 @@ void TeachPage::make_switches(QVBoxLayout& in) {
         if (!spot()) return;
         Spot s = *spot();
         s.stop_at_trigger = on;
-        done(desk_.edit(s, tr("stand still at the trigger")));
+        done_or_shown(desk_.edit(s, tr("stand still at the trigger")));
     });
     in.addLayout(make_row({stop_}));
 }
@@ -122,7 +124,7 @@ void TeachPage::make_via_points(QVBoxLayout& in) {
                                   if (!spot() || row < 0) return;
                                   Spot s = *spot();
                                   s.via.erase(s.via.begin() + row);
-                                  done(desk_.edit(s, tr("via points")));
+                                  done_or_shown(desk_.edit(s, tr("via points")));
                               });
     in.addLayout(make_row({add_via_, remove_via_}));
     connect(via_, &QListWidget::currentRowChanged, this,
@@ -174,13 +176,15 @@ void TeachPage::make_feature(QVBoxLayout& in) {
                         views_.raise(views_.profile);
                         views_.profile->setFocus();
                     });
-    click_ = make_button("reference_click", "target", tr("Reference by click"),
-                         tr("Click the reference point in the live profile; it need not lie on the contour"),
-                         [this] {
-                             views_.profile->set_tool(ProfilePlot::Tool::reference);
-                             views_.raise(views_.profile);
-                             views_.profile->setFocus();
-                         });
+    click_ =
+        make_button("reference_click", "target", tr("Reference by click"),
+                    tr("Click the template's reference point in the live profile; it need not lie on the "
+                       "contour. Measure the reference anew then."),
+                    [this] {
+                        views_.profile->set_tool(ProfilePlot::Tool::reference);
+                        views_.raise(views_.profile);
+                        views_.profile->setFocus();
+                    });
     in.addLayout(make_row({pick_, window_}));
     in.addLayout(make_row({click_}));
     parameters_ = new QVBoxLayout;
@@ -222,7 +226,7 @@ void TeachPage::make_fields(QVBoxLayout& in) {
     for (const Field<Spot>& f : spot_fields()) {
         auto* editor = new ParameterEditor(f.info);
         connect(editor, &ParameterEditor::committed, this, [this, name = f.info.name](double value) {
-            if (spot()) done(desk_.set_spot_field(SpotId(spot()->id), name, value));
+            if (spot()) done_or_shown(desk_.set_spot_field(SpotId(spot()->id), name, value));
         });
         field_editors_.push_back(editor);
         fields_->addWidget(editor);

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "devices/capture/profile_blob.h"
+#include "projects/file/id_length.h"
 #include "projects/file/project_file_detail.h"
 #include "projects/file/row_checksum.h"
 #include "projects/model/part_types.h"
@@ -16,13 +17,13 @@ Expected<void> check_ids(Database& db, const char* table, const std::vector<std:
                          const char* kind) {
     std::set<std::string> seen;
     for (const std::string& id : ids) {
-        if (id.size() > kLongestId) {
+        if (is_too_long(id)) {
             SEAM_TRY(auto known, db.prepare(fmt::format("SELECT 1 FROM {} WHERE id = ?", table)));
             known.bind(1, id);
             SEAM_TRY(auto there, known.step());
             known.reset();
             if (!there)
-                return input_error(Text("the id of a {} is longer than {} bytes", kind, kLongestId),
+                return input_error(Text("the id of a {} is longer than {} signs", kind, kLongestId),
                                    Text("{}...", utf8_text(id.substr(0, 32))), "give a shorter name");
         }
         if (id.empty()) return input_error(Text("a {} has no id", kind), {}, "give every one a name");

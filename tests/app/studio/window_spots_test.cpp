@@ -5,6 +5,9 @@
 #include <QLineEdit>
 #include <QListWidget>
 #include <QSpinBox>
+#include <array>
+#include <cmath>
+#include <random>
 
 #include "core/geometry/three_two_one.h"
 #include "devices/simulated/cell.h"
@@ -15,7 +18,9 @@
 #include "projects/station/acquire.h"
 #include "tests/app/studio/furniture.h"
 #include "tests/app/studio/person.h"
+#include "tests/projects/sample_project.h"
 #include "widgets/editors/parameter_editor.h"
+#include "widgets/pages/teach_live.h"
 
 namespace seamwright {
 namespace {
@@ -312,6 +317,188 @@ TEST_F(Furniture, TheLightOfASpotIsFoundKeptUndoneAndTakenBack) {
     EXPECT_TRUE(spot().light.empty());
     me.shortcut(Qt::Key_Z);
     EXPECT_FALSE(spot().light.empty());
+}
+
+// The landmark goes with the template: on a part that lies elsewhere now it is where it was clicked, as the template sees it.
+TEST(Landmark, IsCarriedBackIntoTheTaughtFrame) {
+    Spot spot;
+    spot.id = "S1";
+    spot.feature.kind = "template";
+    spot.feature.parameters = {{"window_dx_mm", 20}, {"window_dz_mm", 20}, {"window_dphi_deg", 10}};
+    std::mt19937 random(11);
+    std::normal_distribution<double> noise(0, 0.01);
+    const auto contour = [&](double from, double to) {
+        Profile p;
+        for (double x = from; x <= to; x += 0.1) {
+            p.x_mm.push_back(x + noise(random));
+            p.z_mm.push_back(8 / (1 + std::exp(-x)) + 0.002 * x * x + noise(random));
+            p.segment.push_back(0);
+        }
+        return p;
+    };
+    spot.feature.template_profile = contour(-12, 14);
+    spot.feature.template_reference_mm = {0, 4};
+    const Eigen::Vector2d wanted(6, -5);
+    for (const auto& [dx, dz, deg] : {std::array{0., 0., 0.}, {5., -3., 2.}, {-7., 6., -4.}, {2., 9., 5.}}) {
+        const Eigen::Rotation2Dd turn(rad_from_deg(deg));
+        const auto moved = [&](const Eigen::Vector2d& p) -> Eigen::Vector2d {
+            return turn * p + Eigen::Vector2d(dx, dz);
+        };
+        Profile seen = contour(-30, 30);
+        for (std::size_t k = 0; k < seen.size(); ++k) {
+            const Eigen::Vector2d at = moved({seen.x_mm[k], seen.z_mm[k]});
+            seen.x_mm[k] = at.x(), seen.z_mm[k] = at.y();
+        }
+        const auto after = with_landmark(spot, seen, moved(wanted));
+        ASSERT_TRUE(after) << after.error().sentence();
+        EXPECT_LT((after->feature.template_reference_mm - wanted).norm(), 0.05) << dx << " " << deg;
+    }
+    Profile flat;
+    for (int k = 0; k < 400; ++k)
+        flat.x_mm.push_back(0.1 * k), flat.z_mm.push_back(noise(random)), flat.segment.push_back(0);
+    EXPECT_FALSE(with_landmark(spot, flat, wanted));
+    spot.feature.template_profile = {};
+    EXPECT_FALSE(with_landmark(spot, flat, wanted));
+}
+
+TEST_F(Furniture, AReferenceIsClickedForATemplateAtItsSpotAlone) {
+    start(true);
+    Desk& desk = studio->desk();
+    DeskPerson me(window());
+    ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
+    const auto spot = [&]() -> const Spot& { return desk.project().spots.at(0); };
+    desk.selection().select_spot(spot().id);
+    me.step(3);
+    const auto stands = [&](const Pose& at) {
+        desk.worker().go_to(spot().robot_id, at);
+        return me.wait([&] {
+            const auto& robots = desk.station().robots;
+            return !desk.worker().busy() && robots.front().base_from_flange &&
+                   distance_mm(*robots.front().base_from_flange, at) < 1e-6;
+        });
+    };
+    QString told;
+    QObject::connect(&desk, &Desk::trouble, &desk, [&](const QString& sentence) { told = sentence; });
+    ProfilePlot* plot = window().views().profile;
+    const auto click = [&](const Eigen::Vector2d& at) {
+        told.clear();
+        emit plot->reference_clicked({at.x(), at.y()});
+        QApplication::processEvents();
+    };
+    ASSERT_EQ(spot().feature.kind, "template");
+    me.click("reference_click");
+    EXPECT_EQ(plot->tool(), ProfilePlot::Tool::reference);
+    // Elsewhere: refused in one sentence.
+    Pose elsewhere = spot().base_from_flange;
+    elsewhere.translation().x() += 10;
+    ASSERT_TRUE(stands(elsewhere));
+    const std::string before = exact_text(desk.project());
+    click({0, 10});
+    EXPECT_TRUE(told.contains("does not stand at spot")) << told.toStdString();
+    EXPECT_EQ(exact_text(desk.project()), before);
+
+    ASSERT_TRUE(stands(spot().base_from_flange));
+    const auto arrived = std::chrono::steady_clock::now().time_since_epoch();
+    ASSERT_TRUE(me.wait([&] {
+        const auto live = desk.live().latest(spot().sensor_id);
+        return live && live->profile.size() > 100 && live->feature &&
+               std::chrono::nanoseconds(live->frame->host_time_ns) > arrived;
+    }));
+    ASSERT_TRUE(spot().curve);
+    const Eigen::Vector2d was = spot().feature.template_reference_mm;
+    click(was + Eigen::Vector2d(12, 9));
+    EXPECT_EQ(told.toStdString(), "");
+    // The demo's part lies as it was taught, within what the robot repeats.
+    EXPECT_LT((spot().feature.template_reference_mm - was - Eigen::Vector2d(12, 9)).norm(), 1.0);
+    EXPECT_EQ(spot().reference_profile.size(), 0U) << "to be measured anew";
+    EXPECT_FALSE(spot().curve) << "the pass was about the old one";
+    EXPECT_EQ(me.text_of("head_state"), "Its reference is not measured yet.");
+    EXPECT_EQ(plot->tool(), ProfilePlot::Tool::inspect);
+    me.shortcut(Qt::Key_Z);
+    EXPECT_TRUE(spot().curve);
+
+    // Of every other kind no click is a reference.
+    me.choose("feature_kind", "circle");
+    QApplication::processEvents();
+    EXPECT_FALSE(window().findChild<QPushButton*>("reference_click")->isVisible());
+    const std::string other = exact_text(desk.project());
+    click({11.9, 10.6});
+    EXPECT_EQ(exact_text(desk.project()), other);
+}
+
+TEST_F(Furniture, ATickThatIsRefusedComesBackAndAMessageMovesNothing) {
+    DeskPerson me(window());
+    Desk& desk = studio->desk();
+    me.step(3);
+    desk.selection().select_spot(desk.project().spots.at(0).id);
+    QApplication::processEvents();
+    auto* title = window().findChild<QLabel*>("page_title");
+    ASSERT_TRUE(title);
+    const auto places = [&] {
+        QStringList all;
+        for (const QWidget* w : window().findChildren<QPushButton*>())
+            if (const QPoint at = w->mapTo(&window(), QPoint());
+                w->isVisible() && w->objectName() != "dismiss")
+                all << QStringLiteral("%1 %2 %3").arg(w->objectName()).arg(at.x()).arg(at.y());
+        return all.join("; ").toStdString();
+    };
+    QTest::qWait(300);
+    const auto before = places();
+    emit desk.trouble("Something went wrong somewhere; look at it and do what has to be done there.");
+    QTest::qWait(50);
+    auto* frame = window().findChild<QFrame*>("trouble");
+    ASSERT_TRUE(frame->isVisible());
+    EXPECT_EQ(places(), before) << "nothing moves from under the pointer";
+    auto* text = window().findChild<QLabel*>("trouble_text");
+    EXPECT_GE(text->height(), text->heightForWidth(text->width())) << "all of it is read";
+    window().grab().save(QString(SEAMWRIGHT_SCREENS) + "/message.png");
+    ASSERT_TRUE(desk.rename_project("another"));
+    EXPECT_FALSE(frame->isVisible()) << "an edit has succeeded since";
+    emit desk.trouble("Once more.");
+    EXPECT_TRUE(frame->isVisible());
+    me.step(4);
+    EXPECT_FALSE(frame->isVisible()) << "it was about the step that is left";
+    me.step(3);
+
+    // A name that is used already is refused where it is typed, and stays.
+    me.click("rename_spot");
+    auto* dialog = window().findChild<QDialog*>("rename_dialog");
+    ASSERT_TRUE(dialog && dialog->isVisible());
+    auto* line = dialog->findChild<QLineEdit*>("new_name");
+    const std::string id = desk.project().spots.at(0).id, used = desk.project().spots.at(1).id;
+    EXPECT_EQ(line->text().toStdString(), id);
+    line->setText(QString::fromStdString(used));
+    dialog->findChild<QPushButton*>("rename_ok")->click();
+    EXPECT_TRUE(dialog->isVisible());
+    EXPECT_EQ(line->text().toStdString(), used);
+    auto* refused = dialog->findChild<QLabel*>("rename_refused");
+    EXPECT_TRUE(refused->isVisible());
+    EXPECT_TRUE(refused->text().contains("is used already")) << refused->text().toStdString();
+    EXPECT_FALSE(frame->isVisible()) << "in the dialog alone";
+    line->setText("Säule links oben, dritter Punkt");
+    dialog->findChild<QPushButton*>("rename_ok")->click();
+    EXPECT_EQ(desk.project().spots.at(0).id, "Säule links oben, dritter Punkt");
+
+    // Nobody signed in: the tick shows what is.
+    ASSERT_TRUE(desk.save());
+    desk.close();
+    {
+        auto file = ProjectFile::open(path("demo.seam").toStdString());
+        ASSERT_TRUE(file) << file.error().sentence();
+        ASSERT_TRUE(file->add_user("ada", Role::administrator, "correct horse battery"));
+    }
+    ASSERT_TRUE(desk.open(path("demo.seam").toStdString()));
+    QTest::qWait(100);
+    for (auto* asks : window().findChildren<QDialog*>("sign_in_dialog")) asks->reject();
+    desk.selection().select_spot(desk.project().spots.at(0).id);
+    me.step(3);
+    auto* enabled = me.find<QCheckBox>("spot_enabled");
+    ASSERT_TRUE(enabled && enabled->isChecked());
+    enabled->click();
+    QTest::qWait(50);
+    EXPECT_TRUE(desk.project().spots.at(0).enabled);
+    EXPECT_TRUE(enabled->isChecked());
+    EXPECT_TRUE(me.text_of("trouble_text").contains("nobody is signed in"));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <qcustomplot.h>
 
+#include <QDoubleSpinBox>
 #include <QLabel>
 #include <QListWidget>
 #include <QMenu>
@@ -15,6 +16,7 @@
 #include "devices/simulated/scene/mesh_file.h"
 #include "tests/app/studio/furniture.h"
 #include "tests/app/studio/person.h"
+#include "widgets/style.h"
 
 namespace seamwright {
 namespace {
@@ -156,6 +158,20 @@ TEST_F(Furniture, TheJitterWindowIsDraggedOnTheAlignmentPlot) {
     DeskPerson::drag(plot, at(-wide), at(-2));
     EXPECT_NEAR(view->jitter_mm(), 2, 0.3) << "the other line moves it too: they are symmetric";
     // What is accepted then is what was dragged.
+    ASSERT_EQ(me.text_of("align_verdict"), "FROZEN");
+    EXPECT_EQ(view->verdict(), "FROZEN");
+    // At a tolerance beyond what the project requires, standing still is no good news.
+    auto* tolerance = me.find<QDoubleSpinBox>("pass_tolerance");
+    ASSERT_TRUE(tolerance);
+    me.write(tolerance->findChild<QLineEdit*>(), "5");
+    EXPECT_EQ(me.text_of("align_verdict"), "frozen at a widened tolerance");
+    EXPECT_EQ(view->verdict(), "WIDENED");
+    EXPECT_EQ(me.find<QLabel>("align_verdict")->palette().color(QPalette::WindowText),
+              style::attention(window().palette()));
+    me.click("accept_pass");
+    EXPECT_TRUE(me.text_of("head_state").contains("its pass is not"))
+        << me.text_of("head_state").toStdString();
+    me.write(tolerance->findChild<QLineEdit*>(), "0.05");
     ASSERT_EQ(me.text_of("align_verdict"), "FROZEN");
     me.click("accept_pass");
     EXPECT_NEAR(desk.project().spots.front().jitter_mm, view->jitter_mm(), 1e-9);

@@ -300,9 +300,19 @@ TEST(ProjectFile, IdsHaveALength) {
     EXPECT_TRUE(file.save(with(64)));
     const auto refused = file.save(with(65));
     ASSERT_FALSE(refused);
-    EXPECT_THAT(refused.error().sentence(), HasSubstr("the id of a spot is longer than 64 bytes"));
+    EXPECT_THAT(refused.error().sentence(), HasSubstr("the id of a spot is longer than 64 signs"));
     EXPECT_EQ(exact_text(*file.load()), exact_text(with(64))) << "nothing of it is saved";
     EXPECT_FALSE(ProjectFile::create(folder / "b.seam", with(300)));
+    // Signs are counted, not the bytes that they take.
+    const auto umlauts = [&](int signs) {
+        Project changed = project;
+        changed.spots[5].id.clear();
+        for (int k = 0; k < signs; ++k) changed.spots[5].id += "ä";
+        return changed;
+    };
+    EXPECT_TRUE(file.save(umlauts(64)));
+    EXPECT_FALSE(file.save(umlauts(65)));
+    ASSERT_TRUE(file.save(with(64)));
 
     // One that an older version let pass.
     {

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "projects/measure/measure.h"
+#include "projects/measure/reference_feature.h"
 #include "projects/model/part_types.h"
 #include "projects/proof/known_shift.h"
 #include "tests/projects/door_project.h"
@@ -175,6 +178,71 @@ TEST_F(Checklist, FrozenIsStaleWhenItsSpotWasTurned) {
     drifting.status = AlignmentStatus::drifting;
     put(drifting);
     expect(CheckStep::frozen, CheckStatus::missing, "drifting");
+}
+
+TEST_F(Checklist, FrozenAtAWidenedToleranceStaysOpen) {
+    project.requirements.sigma3_mm = 0.95;
+    const auto judge = [&](double expected_error_mm, double tolerance_mm) {
+        FrozenContour f;
+        f.spot_id = project.spots[1].id;
+        f.status = AlignmentStatus::frozen;
+        f.jitter_mm = project.spots[1].jitter_mm;
+        f.expected_error_mm = expected_error_mm;
+        f.tolerance_mm = tolerance_mm;
+        put(f);
+    };
+    judge(0.012, 0.05);
+    expect(CheckStep::frozen, CheckStatus::done, "stands still");
+    EXPECT_THAT(item(CheckStep::frozen).evidence[1].in(Language::english),
+                testing::HasSubstr("expected error 0.012 mm at a jitter of 3.000 mm, tolerance 0.050 mm"));
+    judge(0.012, 5);
+    expect(CheckStep::frozen, CheckStatus::missing, "at a tolerance of 5.000 mm, 0.950 mm are required");
+    judge(2.5, 5);
+    expect(CheckStep::frozen, CheckStatus::missing, "by up to 2.500 mm, 0.950 mm are required");
+    judge(0.9, 0.95);
+    expect(CheckStep::frozen, CheckStatus::done, "stands still");
+    judge(std::numeric_limits<double>::quiet_NaN(), 0.05);
+    EXPECT_EQ(item(CheckStep::frozen).status, CheckStatus::missing);
+}
+
+// A contour that ends at `at`, seen with 0.05 mm of noise.
+Profile ending_at(const Eigen::Vector2d& at, std::mt19937& random) {
+    std::normal_distribution<double> noise(0, 0.05);
+    Profile seen;
+    for (int k = 0; k < 400; ++k) {
+        seen.x_mm.push_back(at.x() + 0.1 * k);
+        seen.z_mm.push_back(at.y() + noise(random));
+        seen.segment.push_back(0);
+    }
+    return seen;
+}
+
+TEST_F(Checklist, AReferenceBesideItsFeatureIsNotTaught) {
+    Spot& spot = project.spots[0];
+    spot.feature = {};
+    spot.feature.kind = "contour-end";
+    spot.feature.parameters["side"] = 0;
+    std::mt19937 random(5);
+    // As teaching leaves it: the mean of five arrivals of an ordinary robot, and the profile of one of them.
+    std::normal_distribution<double> repeats(0, 0.1);
+    for (int k = 0; k < 60; ++k) {
+        Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+        for (int arrival = 0; arrival < 5; ++arrival) {
+            const Eigen::Vector2d at(-15 + repeats(random), -1 + repeats(random));
+            spot.reference_profile = ending_at(at, random);
+            const auto found = feature_at_reference(spot);
+            ASSERT_TRUE(found);
+            sum += found->point_mm;
+        }
+        spot.reference_mm = {sum.x() / 5, 0, sum.y() / 5};
+        ASSERT_EQ(reference_beside_mm(project, spot), 0) << k;
+    }
+    expect(CheckStep::taught, CheckStatus::done, "have their reference");
+    // Clicked somewhere in the plot.
+    spot.reference_mm += Eigen::Vector3d(27, 0, 11);
+    expect(CheckStep::taught, CheckStatus::missing, "the reference of spot " + spot.id + " lies 29.");
+    spot.weights = {0, 1, 0};
+    expect(CheckStep::taught, CheckStatus::done, "have their reference");
 }
 
 TEST_F(Checklist, RegionsMustReachTheRequired3Sigma) {

@@ -366,5 +366,55 @@ TEST_F(Commands, ASelectionFollowsTheThing) {
     EXPECT_EQ(desk.free_id<Spot>("S"), "S3");
 }
 
+TEST(DeskEdits, NobodySignedInChangesNothing) {
+    TemporaryFolder folder;
+    const auto path = folder / "a.seam";
+    {
+        auto file = ProjectFile::create(path, full_project());
+        ASSERT_TRUE(file) << file.error().sentence();
+        ASSERT_TRUE(file->add_user("ada", Role::administrator, "correct horse battery"));
+    }
+    Desk desk;
+    ASSERT_TRUE(desk.open(path));
+    const std::string before = bits(desk.project());
+    const auto refuses = [&](const auto& result, const char* what) {
+        ASSERT_FALSE(result) << what;
+        EXPECT_THAT(result.error().sentence(), HasSubstr("nobody is signed in")) << what;
+        EXPECT_EQ(bits(desk.project()), before) << what;
+        EXPECT_FALSE(desk.undo_stack().canUndo()) << what;
+    };
+    const Spot& spot = desk.project().spots[0];
+    refuses(desk.set_spot_enabled(spot.id, !spot.enabled), "switching a spot");
+    refuses(desk.use_calibration(SensorId("A"), CalibrationId("C2")), "choosing a calibration");
+    refuses(desk.reteach(Exchange{}), "taking up again");
+    Region region = desk.project().regions[0];
+    region.spot_ids.pop_back();
+    refuses(desk.edit(region), "changing a region");
+    EXPECT_EQ(desk.edit(region).error().sentence(), desk.may(Deed::limits).error().sentence());
+    EXPECT_EQ(desk.remove<Region>(region.id).error().sentence(), desk.may(Deed::limits).error().sentence());
+    EXPECT_NE(desk.may(Deed::limits).error().sentence(), desk.may(Deed::teach).error().sentence());
+    ASSERT_TRUE(desk.sign_in("ada", "correct horse battery"));
+    EXPECT_TRUE(desk.set_spot_enabled(spot.id, !spot.enabled));
+    EXPECT_TRUE(desk.edit(region));
+}
+
+TEST(DeskEdits, ANameIsCountedInSigns) {
+    TemporaryFolder folder;
+    Desk desk;
+    ASSERT_TRUE(desk.create(folder / "a.seam", full_project()));
+    const auto umlauts = [](int signs) {
+        std::string name;
+        for (int k = 0; k < signs; ++k) name += "ü";
+        return name;
+    };
+    const std::string id = desk.project().spots[0].id;
+    EXPECT_FALSE(desk.rename<Spot>(id, umlauts(65)));
+    EXPECT_FALSE(desk.rename<Spot>(id, std::string(65, 'x')));
+    EXPECT_FALSE(desk.rename<Spot>(id, std::string(300, '\x80'))) << "no sign begins in it";
+    ASSERT_TRUE(desk.rename<Spot>(id, umlauts(64)));
+    const auto saved = desk.save();
+    EXPECT_TRUE(saved) << saved.error().sentence();
+}
+
 }  // namespace
 }  // namespace seamwright

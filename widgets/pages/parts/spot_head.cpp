@@ -10,18 +10,8 @@
 namespace seamwright {
 namespace {
 
-bool pass_accepted(const Desk& desk, const Spot& s) {
-    // As the checklist judges it.
-    const Evidence* pass = newest<FrozenContour>(desk.facts(), s.id);
-    if (!s.curve || !pass || std::get<FrozenContour>(pass->what).status != AlignmentStatus::frozen)
-        return false;
-    const auto then = desk.facts().setups.find(pass->setup);
-    return then != desk.facts().setups.end() && !pass_changed(*then->second, desk.project(), s.id);
-}
-
 bool is_done(const Desk& desk, const Spot& s) {
-    return !s.enabled || (s.reference_profile.size() > 0 && s.reference_state == ReferenceState::measured &&
-                          pass_accepted(desk, s));
+    return !s.enabled || (!taught_open(desk.project(), s) && !frozen_open(desk.project(), desk.facts(), s));
 }
 
 }  // namespace
@@ -33,7 +23,8 @@ SpotDeed next_deed(const Desk& desk, const std::string& spot_id) {
     if (!s) return SpotDeed::choose;
     if (!is_done(desk, *s)) {
         if (s->feature.kind == "template" && s->feature.template_profile.size() == 0) return SpotDeed::piece;
-        if (s->reference_profile.size() == 0 || s->reference_state == ReferenceState::from_type)
+        if (s->reference_profile.size() == 0 || s->reference_state == ReferenceState::from_type ||
+            (s->reference_state == ReferenceState::measured && reference_beside_mm(project, *s) > 0))
             return SpotDeed::reference;
         return s->reference_state == ReferenceState::from_drawing ? SpotDeed::confirm : SpotDeed::pass;
     }
@@ -101,8 +92,11 @@ void SpotHead::refresh() {
             may = may && connected;
             break;
         case SpotDeed::reference:
-            state_->setText(connected ? tr("Its reference is not measured yet.")
-                                      : tr("Its reference is not measured yet: connect the devices first."));
+            state_->setText(!connected ? tr("Its reference is not measured yet: connect the devices first.")
+                            : s->reference_profile.size() > 0 &&
+                                    s->reference_state == ReferenceState::measured
+                                ? tr("Its reference does not lie at its feature: measure it again.")
+                                : tr("Its reference is not measured yet."));
             deed_->setText(tr("Measure reference"));
             may = may && connected;
             break;

@@ -59,11 +59,27 @@ void StepPage::later() {
                     tr("%1: %2").arg(s.stale ? status_word(StepStatus::stale) : status_word(s.status), s.why),
                     tone);
         refresh();
+        fit_head();
     });
+}
+
+// Words that came while the page was being shown may be of more lines than it had room for.
+void StepPage::fit_head() {
+    if (!head_) return;
+    for (QWidget* w : {head_, head_->parentWidget()})
+        if (w && w->layout()) {
+            w->updateGeometry();
+            w->layout()->activate();
+        }
 }
 
 bool StepPage::done(const Expected<void>& result) {
     if (!result) emit desk_.trouble(shown_error(result.error()));
+    return result.has_value();
+}
+
+bool StepPage::done_or_shown(const Expected<void>& result) {
+    if (!done(result)) later();
     return result.has_value();
 }
 

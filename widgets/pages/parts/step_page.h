@@ -35,6 +35,8 @@ class StepPage : public QWidget {
     QVBoxLayout& make_head();
     // Says an edit's Error in the window's message line; true when there was none.
     bool done(const Expected<void>& result);
+    // The same, and what was ticked or chosen shows again what is.
+    bool done_or_shown(const Expected<void>& result);
     // Start, cancel, and how far it is; shown while the worker is busy.
     QWidget* make_progress();
 
@@ -43,6 +45,7 @@ class StepPage : public QWidget {
 
   private:
     void later();
+    void fit_head();
     Step step_;
     QVBoxLayout* box_;
     QLabel *title_, *state_;

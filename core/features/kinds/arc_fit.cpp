@@ -20,7 +20,7 @@ constexpr double kKink = 3.5;            // standard deviations off the tangent,
 constexpr double kSteps[] = {0.3, 0.3};  // at most, of the radius and rad
 constexpr double kMoved = 0.1;           // of the arc's points: so many others, and it is fitted again
 constexpr double kUnknown = 0.5;         // of the logarithm of a reading's weight, for each
-constexpr double kSettled = 1e-9;
+constexpr double kSettled = 1e-9, kNear = 1e-6;
 constexpr double kWidest = 170 * kPi / 180;  // to one side of the arc's middle
 
 }  // namespace
@@ -106,6 +106,13 @@ bool ArcFit::minimise(Shape& shape, int rounds) const {
             damping *= 10;
             if (damping > 1e6) break;
         }
+    }
+    // Where the sum of squares no longer tells two places apart its gradient still does.
+    for (int round = 0; round < 2; ++round) {
+        const Vector5 step = -shape.normal.ldlt().solve(gradient);
+        if (!step.allFinite() || step.norm() > kNear * (1 + shape.p[2])) break;
+        shape.p += step;
+        sum(shape, gradient);
     }
     if (shape.on_arc < kFewestForArcFit) return false;
     for (const Side side : {left, right})

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "core/calibration/camera/camera_limits.h"
-#include "core/calibration/camera/plate_bundle.h"
+#include "core/calibration/camera/plate_doubt.h"
 #include "core/calibration/camera/projection.h"
 #include "core/calibration/numbers.h"
 #include "core/calibration/pose_set.h"
@@ -234,52 +234,29 @@ double hull_share(const CameraData& data) {
     return std::abs(area) / (static_cast<double>(data.width) * data.height);
 }
 
-// What a free plate shape would explain, in words; empty when nothing to speak of.
-Text plate_hint(const CameraData& data, const std::vector<std::vector<char>>& used,
-                const CameraFreedom& freedom, const CameraSolution& solution) {
-    if (data.views.size() < 5) return {};
-    // Asked of plates given as flat in z = 0 alone: depth over length, and height.
-    constexpr double kGivenFlat = 1e-6, kGivenAtZero_mm = 1e-9;
-    // Of the corners' sum of squares: what a free shape must fall below to be worth a word.
-    constexpr double kShapeTells = 0.7;
-    for (const auto& v : data.views) {
-        const Eigen::Vector3d e = extents(v.object_mm);
-        if (e(2) > kGivenFlat * e(0) || std::abs(v.object_mm[0].z()) > kGivenAtZero_mm) return {};
-    }
-    PlateBundle p;
-    p.data = &data;
-    p.point_used = used;
-    p.freedom = freedom;
-    p.freedom.two_focals = false;
-    p.hold_exactly = true;
-    p.shape = ShapeFreedom::bowed;
-    PlateBundleState s;
-    s.intrinsics = solution.intrinsics;
-    s.intrinsics(0) = s.intrinsics(1) = 0.5 * (solution.intrinsics(0) + solution.intrinsics(1));
-    s.camera_from_target = solution.camera_from_target;
-    Eigen::Vector2d low(1e300, 1e300), high(-1e300, -1e300);
-    for (const auto& v : data.views)
-        for (const auto& x : v.object_mm) low = low.cwiseMin(x.head<2>()), high = high.cwiseMax(x.head<2>());
-    s.shape.middle_mm = 0.5 * (low + high);
-    s.shape.half_mm = 0.5 * (high - low).maxCoeff();
-    const auto fit = solve_plate_bundle(p, s);
-    if (!fit.covariance.size() || fit.corner_cost > kShapeTells * solution.cost) return {};
+// In words; empty: the plate is not doubted.
+Text plate_hint(const PlateDoubt& doubt) {
+    if (!doubt.tells) return {};
     return Text(
         "the plate is not as stated: stretched {:.2f} %, sheared {:.2f} %, bowed {:.2f} mm would take {:.0f} "
         "% of the "
         "residuals away",
-        100 * fit.state.shape.stretch, 100 * fit.state.shape.shear,
-        fit.state.shape.bow_mm.cwiseAbs().maxCoeff(), 100 * (1 - std::sqrt(fit.corner_cost / solution.cost)));
+        100 * doubt.shape.stretch, 100 * doubt.shape.shear, doubt.shape.bow_mm.cwiseAbs().maxCoeff(),
+        100 * (1 - std::sqrt(1 - doubt.fall)));
 }
 
-Judgement judge(const CameraResult& r, std::size_t views, const Text& hint) {
+// `bent`: by how many sigma the plate's own shape moves focal lengths or centre.
+Judgement judge(const CameraResult& r, std::size_t views, const Text& hint, double bent) {
     // What is worse is poor, or usable: sigma of the focal length over itself, and fit of the corners.
     constexpr double kPoorFocal = 0.01, kUsableFocal = 0.002, kUsableCorners_px = 0.5;
+    constexpr double kMostBent = 3;            // sigma
     constexpr double kCoveredShare = 1.0 / 3;  // of the image: less extrapolates the distortion
     const double f = 0.5 * (r.camera.fx + r.camera.fy);
     const double sigma = r.report.covariance.size() ? r.report.parameters[0].sigma : kInfinity;
     const char* tilt =
         "take 10 or more views with the plate tilted by 20 to 40 degrees in different directions";
+    const char* flat = "measure the plate or take a flat one";
+    if (!hint.empty() && !(bent < kMostBent)) return {Verdict::poor, hint, flat};
     if (!(sigma < kOpenFocal * f) || !std::isfinite(f))
         return {
             Verdict::undetermined,
@@ -292,7 +269,7 @@ Judgement judge(const CameraResult& r, std::size_t views, const Text& hint) {
                 "check focus, the pattern's size and that the plate is flat"};
     if (sigma > kPoorFocal * f)
         return {Verdict::poor, Text("the focal length is known to {:.1f} % only", 100 * sigma / f), tilt};
-    if (!hint.empty()) return {Verdict::usable, hint, "measure the plate or take a flat one"};
+    if (!hint.empty()) return {Verdict::usable, hint, flat};
     if (sigma > kUsableFocal * f)
         return {Verdict::usable, Text("the focal length is known to {:.2f} %", 100 * sigma / f), tilt};
     if (r.rms_px > kUsableCorners_px)
@@ -379,8 +356,14 @@ Expected<CameraResult> calibrate_camera(const CameraData& input, const CameraOpt
     for (std::size_t i = 0; i < 9; ++i)
         report.parameters.push_back(
             {kIntrinsicNames[i], solution.intrinsics(static_cast<Eigen::Index>(i)), i < 4 ? "px" : "1", 0});
+    const PlateDoubt doubt = doubt_of_plate(data, used, freedom, exactly, result.sigma_px, solution);
+    double bent = 0;
     if (unit.size()) {
         report.covariance = variance * basis * unit * basis.transpose();
+        for (Eigen::Index i = 0; doubt.tells && i < 4; ++i)
+            if (report.covariance(i, i) > 0)
+                bent = std::max(bent, std::abs(doubt.moves(i)) / std::sqrt(report.covariance(i, i)));
+        if (doubt.tells) report.covariance += doubt.moves * doubt.moves.transpose();
         finish_statistics(report);
     }
     // Poses back to the order of the input; views left out are located with the solved camera.
@@ -427,7 +410,7 @@ Expected<CameraResult> calibrate_camera(const CameraData& input, const CameraOpt
         report.hold_out.rms_mm = std::sqrt(p.square_mm);
         report.hold_out.max_mm = p.max_mm;
     }
-    report.judgement = judge(result, data.views.size(), plate_hint(data, used, freedom, solution));
+    report.judgement = judge(result, data.views.size(), plate_hint(doubt), bent);
     if (report.judgement.verdict == Verdict::undetermined) report.covariance.resize(0, 0);
     return result;
 }

@@ -68,7 +68,9 @@ struct CameraResult {
 
 // Error: fewer than one view of a body or two of a plate, views with fewer than 4 points, points on one line,
 // NaN, pixels outside the image, identical views only, unknown ids. Verdict: undetermined when the views
-// cannot fix f (sigma above 5 %); poor when sigma(f) > 1 % or rms > 1.5 px; usable when sigma(f) > 0.2 %, rms
+// cannot fix f (sigma above 5 %); poor when sigma(f) > 1 % or rms > 1.5 px, or the views contradict the plate's stated
+// shape (plate_doubt.h) and its own moves fx, fy or the centre by more than 3 sigma (less: usable, and the sigmas hold
+// it); usable when sigma(f) > 0.2 %, rms
 // > 0.5 px or the field is covered by less than a third.
 Expected<CameraResult> calibrate_camera(const CameraData& data, const CameraOptions& options);
 

@@ -11,6 +11,7 @@
 #include "core/calibration/camera/bent_line.h"
 #include "core/calibration/camera/camera.h"
 #include "core/calibration/camera/camera_limits.h"
+#include "core/calibration/camera/line_noise.h"
 #include "core/calibration/camera/projection.h"
 #include "core/calibration/problem.h"
 #include "core/geometry/decompositions.h"
@@ -370,6 +371,19 @@ bool spans_the_field(const LensResult& result, const Lines& lines, bool converge
            result.report.covariance.allFinite();
 }
 
+LineNoise point_noise(const LensData& data, const Intrinsics& k, const Lines& lines) {
+    LineNoise noise;
+    for (std::size_t i = 0; i < data.lines.size(); ++i)
+        if (lines.used[i]) noise.add(data.lines[i], lines.on[i], lines.all_distances(i, k));
+    return noise;
+}
+
+// What no lens of this model takes away, of lines whose points lie where they are seen.
+bool stays_bent(double rms_px, double noise_px) {
+    constexpr double kTimes = 3;
+    return noise_px > 0 && rms_px > std::max(kBentPx, kTimes * noise_px);
+}
+
 Judgement judged(const LensResult& result, int lines_used, bool converged, bool spans) {
     const CalibrationReport& report = result.report;
     const char* cure = "take lines in all parts of the image, in two directions, from edge to edge";
@@ -388,6 +402,16 @@ Judgement judged(const LensResult& result, int lines_used, bool converged, bool 
     if (result.straightness_after_px > kStraight_px)
         return {Verdict::poor, say(Text("the lines stay bent by {:.2f} px", result.straightness_after_px)),
                 "check that the lines lie on a flat plane"};
+    const Text bent("the lines stay bent by {:.2f} px, their points scatter by {:.2f} px",
+                    result.straightness_after_px, result.point_noise_px);
+    const char* plane = "check that the lines lie on a flat plane";
+    if (stays_bent(result.straightness_after_px, result.point_noise_px)) {
+        if (result.full_model_px > 0 && !stays_bent(result.full_model_px, result.point_noise_px))
+            return {Verdict::usable, say(bent), "solve for k3, p1 and p2 too"};
+        return {Verdict::poor, say(bent), plane};
+    }
+    if (result.bent && result.straightness_after_px > kNearPx)
+        return {result.centre_strays ? Verdict::poor : Verdict::usable, say(bent), plane};
     if (result.corner_sigma_px > kCornerGood_px)
         return {Verdict::usable,
                 say(Text("the distortion in the corners is known to {:.2f} px", result.corner_sigma_px)),
@@ -446,6 +470,15 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
         report.covariance = solved.variance * inverse_matrix(solved.information);
     else
         report.covariance.setConstant(n, n, kInfinity);
+    const LineNoise noise = point_noise(data, k, lines);
+    result.point_noise_px = noise.sigma_px();
+    const double form = noise.form_factor(result.straightness_after_px, lines.points(), lines.count());
+    result.bent = form > 1;
+    result.centre_strays = (k.segment<2>(2) - middle).norm() > hold;
+    report.covariance *= form;
+    if (!options.full && solved.converged && stays_bent(result.straightness_after_px, result.point_noise_px))
+        if (const Solution full = solve_lens(lines, k, {2, 3, 4, 5, 8, 6, 7}, middle, hold); full.converged)
+            result.full_model_px = std::sqrt(full.squares / points);
     state_corners(data, k, half, free, result);
     const bool spans = spans_the_field(result, lines, solved.converged);
     report.judgement = judged(result, lines.count(), solved.converged, spans);

@@ -47,13 +47,19 @@ struct LensResult {
     double k1_px = 0, k2_px = 0;  // K1 (1/px^2) and K2 (1/px^4) of (4.1)
     double straightness_before_px = 0,
            straightness_after_px = 0;  // rms distance from the fitted lines, of points used
+    double point_noise_px = 0;         // sigma of a point across its line, whatever form the lines keep
+    bool centre_strays = false;        // farther from the image's middle than a tenth of the width
+    bool bent = false;                 // by more than their points scatter; the covariance holds it
+    double full_model_px = 0;          // straightness_after_px by k3, p1, p2 too; where it was asked, else 0
     double corner_shift_px = 0,
            corner_sigma_px = 0;  // distortion in the image's corner and its sigma (worst corner)
     CalibrationReport report;    // centre_u, centre_v (px), k1, k2 (scaled radius), k3, p1, p2
 };
 
 // Error: no size, lines with fewer than 5 points, NaN, points outside the image. Verdict undetermined: fewer
-// than 3 lines, no lens that makes them straight, or the distortion in a corner known to worse than 3 px.
+// than 3 lines, no lens that makes them straight, or the distortion in a corner known to worse than 3 px. poor: lines stay
+// bent by 2 px, or by three times what their points scatter (line_noise.h) and 0.1 px; usable where k3, p1 and p2 would
+// take that away, or from 1.3 times on (and more than chance), where the covariance counts a third of a line as one point (poor if the centre strays as well: bent lines draw it).
 // What was left out stands in the notes of report.poses and in the judgement.
 Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& options);
 

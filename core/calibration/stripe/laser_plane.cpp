@@ -9,6 +9,8 @@
 #include "core/calibration/numbers.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/statistics.h"
+#include "core/calibration/stripe/laser_plane_camera.h"
+#include "core/numbers.h"
 #include "core/profile/units.h"
 
 namespace seamwright {
@@ -19,6 +21,13 @@ constexpr double kLeastRest_px2 = 1e-12;  // of exact pairs, a number
 constexpr double kOpenPose_mm = 5, kOpenPose_deg = 2;        // sigma, from which on the pose is open
 constexpr double kUsablePose_mm = 1, kUsablePose_deg = 0.3;  // sigma, beyond
 constexpr int kFewPairs = 10;
+// What pixel and point miss one another by beyond what the stated places explain, sqrt(2) times the sigma of a coordinate:
+// the limits of a camera's corners. Apexes in an image and in a profile are found to 0.1 to 0.3 px.
+// With fewer pairs than a wrong one can be told among it is to be trusted less.
+constexpr double kUsableMisfit_px = 0.5, kPoorMisfit_px = 1.5, kPoorMisfitOfFew_px = 1;
+constexpr int kFewestToTell = 6;
+// Rms of what a freed camera takes away. Cameras of good calibrations differ by less than the first over the field.
+constexpr double kUsablePattern_px = 0.1, kPoorPattern_px = 0.3;
 
 CameraPoints view_of(const std::vector<LaserPair>& pairs, const std::vector<char>& used, int without = -1) {
     CameraPoints view;
@@ -103,11 +112,25 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     };
     if (flatness(view_of(pairs, used)) < kPairsOnALine)
         return undetermined("the points lie on one line of the laser plane");
+    const auto row_first = [&](double swapped_px) {
+        return Judgement{Verdict::poor,
+                         Text("the pairs fit to {:.2f} px when they are read as [v, u]", swapped_px),
+                         "write every pixel as [column, row]"};
+    };
+    const auto unless_swapped = [&](const Text& why) {
+        const auto swapped = fits_swapped(camera, view_of(pairs, used), kInfinity);
+        undetermined(why);
+        if (swapped && *swapped < kUsableMisfit_px) {
+            report.judgement = row_first(*swapped);
+            report.judgement.verdict = Verdict::undetermined;
+        }
+        return result;
+    };
     auto solved = locate_target(camera, view_of(pairs, used));
-    if (!solved) return undetermined(solved.error().what);
+    if (!solved) return unless_swapped(solved.error().what);
 
     // The pair whose removal helps most, while the gain is far beyond what noise gives.
-    for (int round = 0; count() >= 6 && round < static_cast<int>(pairs.size()) / 4 + 1; ++round) {
+    for (int round = 0; count() >= kFewestToTell && round < static_cast<int>(pairs.size()) / 4 + 1; ++round) {
         const double n = count();
         const double cost = n * solved->rms_px * solved->rms_px;
         int worst = -1;
@@ -139,6 +162,17 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     const double stated = variance_of_places(camera, solved->camera_from_target, view, place_sigma_mm);
     result.covariance = solved->covariance * std::max(student * student, seen > 0 ? stated / seen : 0.0);
     result.rms_px = solved->rms_px;
+    const double squares = solved->rms_px * solved->rms_px * count();
+    const CameraDoubt doubt = doubt_of_camera(camera, solved->camera_from_target, view, squares);
+    if (doubt.tells) result.covariance += doubt.moves * doubt.moves.transpose();
+    const double unexplained = !(stated > 0)                                   ? seen
+                               : contradicts_stated(squares / stated, freedom) ? std::max(0.0, seen - stated)
+                                                                               : 0;
+    const double misfit_px = std::sqrt(2 * unexplained);
+    const auto swapped = misfit_px > kUsableMisfit_px ? fits_swapped(camera, view, squares) : std::nullopt;
+    result.notices.emplace_back(
+        "the camera counts as exact: what its focal length, centre and distortion err by is not in the "
+        "sigmas");
     add_pose(report, result.camera_from_laser);
     state_covariance(report, result.covariance);
 
@@ -149,7 +183,7 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
         report.poses[i].rms_px = residual_px(camera, result.camera_from_laser, pairs[i]);
         if (const auto xz = model.to_laser(pairs[i].pixel))
             report.poses[i].rms_mm = (*xz - pairs[i].laser_mm).norm();
-        if (!used[i] || count() < 6) continue;
+        if (!used[i] || count() < kFewestToTell) continue;
         const auto rest = locate_target(camera, view_of(pairs, used, static_cast<int>(i)));
         if (!rest) continue;
         const double e = residual_px(camera, rest->camera_from_target, pairs[i]);
@@ -176,11 +210,20 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     if (!(sigma_mm < kOpenPose_mm) || !(sigma_deg < kOpenPose_deg)) {
         report.parameters.clear();
         report.covariance.resize(0, 0);
-        return undetermined(
+        return unless_swapped(
             Text("the pairs leave the pose open (sigma {:.1f} mm, {:.1f} degrees)", sigma_mm, sigma_deg));
     }
-    if (result.rms_px > kPoorPairs_px)
-        report.judgement = {Verdict::poor, Text("the pairs fit to {:.1f} px only", result.rms_px),
+    const Text pattern("the residuals have the form of a lens that bends otherwise ({:.2f} px)",
+                       doubt.pattern_px);
+    const char* camera_cure = "give the camera as it was calibrated, with k1, k2, p1, p2 and k3";
+    if (swapped)
+        report.judgement = row_first(*swapped);
+    else if (doubt.tells && doubt.pattern_px > kPoorPattern_px)
+        report.judgement = {Verdict::poor, pattern, camera_cure};
+    else if (result.rms_px > kPoorPairs_px ||
+             misfit_px > (count() < kFewestToTell ? kPoorMisfitOfFew_px : kPoorMisfit_px))
+        report.judgement = {Verdict::poor,
+                            Text("the pairs fit to {:.1f} px only", std::max(result.rms_px, misfit_px)),
                             "check the camera and that pixels and laser points belong together"};
     else if (!without.empty())
         report.judgement = {Verdict::usable,
@@ -189,6 +232,12 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     else if (count() < kFewPairs)
         report.judgement = {Verdict::usable, Text("{} pairs are few", count()),
                             "take 10 or more over the whole field of view"};
+    else if (doubt.tells && doubt.pattern_px > kUsablePattern_px)
+        report.judgement = {Verdict::usable, pattern, camera_cure};
+    else if (misfit_px > kUsableMisfit_px)
+        report.judgement = {Verdict::usable,
+                            Text("pixels and laser points miss one another by {:.2f} px", misfit_px),
+                            "check the camera, and state how well the positions are known"};
     else if (sigma_mm > kUsablePose_mm || sigma_deg > kUsablePose_deg)
         report.judgement = {Verdict::usable,
                             Text("the pose is known to {:.2f} mm and {:.2f} degrees", sigma_mm, sigma_deg),

@@ -6,7 +6,9 @@
 // into the pose (both mirror poses are tried).
 //
 // Noise model: pixels independent, one sigma, estimated from the redundancy (the covariance is as wide as a normal one
-// that holds 95 % has to be); where the places' own sigma is stated and says more, as much as that gives in the image.
+// that holds 95 % has to be); where the places' own sigma is stated and says more, as much as that gives in the image. The
+// camera counts as exact; where the residuals contradict it (laser_plane_camera.h), the sigmas hold what the pose moves by
+// when it is freed.
 // Degenerate: points on one line (the pose may turn about it).
 
 #include <string>
@@ -28,12 +30,14 @@ struct LaserPlaneResult {
     Pose camera_from_laser = Pose::Identity();
     Matrix6 covariance = Matrix6::Zero();
     double rms_px = 0;
+    std::vector<Text> notices;
     CalibrationReport report;  // x, y, z (mm), rx, ry, rz (deg)
 };
 
 // At least 4 pairs (10 and more advised). A pair that the others contradict is named and left out (from 6
 // pairs on). Error: fewer than 4 pairs, NaN, unknown or double ids. Verdict undetermined: points on one line,
-// sigma beyond 5 mm or 2 degrees. place_sigma_mm: of laser_mm along each axis, independent from pair to pair (a stage's
+// sigma beyond 5 mm or 2 degrees. poor: pixels and points miss one another by more than 1.5 px, they fit better as [v, u],
+// or another camera takes 0.3 px of their residuals away; from 0.5 and 0.1 px on at most usable. place_sigma_mm: of laser_mm along each axis, independent from pair to pair (a stage's
 // or a robot's arrivals); 0: not stated.
 Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
                                                  const std::vector<LaserPair>& pairs,

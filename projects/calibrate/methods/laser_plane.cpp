@@ -34,6 +34,7 @@ Expected<CalibrationSolution> solve_laser_plane(const json& data, const Excluded
     result["rms_px"] = known ? number_json(solved.rms_px) : json(nullptr);
     result["sigma"] = known ? pose_sigma_json(solved.camera_from_laser, solved.covariance) : json(nullptr);
     result["covariance_pose"] = known ? matrix_json(solved.covariance) : json(nullptr);
+    solution.notices = std::move(solved.notices);
     solution.report = std::move(solved.report);
     finish_document(solution);
     return solution;

@@ -55,6 +55,7 @@ Expected<CalibrationSolution> solve_lens(const json& data, const ExcludedIds& ex
     result["K2"] = given(solved.k2_px);
     result["straightness_before_px"] = number_json(solved.straightness_before_px);
     result["straightness_after_px"] = given(solved.straightness_after_px);
+    result["point_noise_px"] = given(solved.point_noise_px);
     result["corner_shift_px"] = given(solved.corner_shift_px);
     result["corner_sigma_px"] = number_json(solved.corner_sigma_px);
     solution.report = std::move(solved.report);

@@ -1,9 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/calibration/camera/f_test.h"
 #include "core/calibration/camera/lens.h"
 #include "core/calibration/stripe/laser_plane.h"
 #include "tests/core/calibration/camera/camera_scene.h"
+#include "tests/core/calibration/independent/plain_world.h"
 
 namespace seamwright {
 namespace {
@@ -162,6 +164,55 @@ TEST(Lens, LinesThatNoLensStraightensGiveAVerdictNotAnError) {
     }
 }
 
+// Lines of a sheet that is not flat: each a parabola in space, the lens has no such form.
+TEST(Lens, LinesThatAreBentInSpaceAreNotGood) {
+    int poor = 0, bent = 0;
+    for (const double bent_px : {0.0, 1.0, 2.0, 4.0})
+        for (unsigned seed = 1; seed <= 10; ++seed) {
+            plain::Dice dice(seed);
+            LensData d{1280, 1024, {}};
+            const double k1 = -0.14, k2 = 0.05, f = 1900;
+            double smooth = 0;  // neighbours err alike, as in a smoothed image
+            while (d.lines.size() < 12) {
+                const double turn = dice.u(0, 3.1416), aside = dice.u(-350, 350);
+                const Eigen::Vector2d along(std::cos(turn), std::sin(turn)), across(-along.y(), along.x());
+                std::vector<Eigen::Vector2d> line;
+                for (int i = 0; i < 120; ++i) {
+                    const double t = -900 + 1800.0 * i / 119;
+                    const Eigen::Vector2d p = Eigen::Vector2d(640, 512) + t * along +
+                                              (aside + bent_px * std::pow(t / 500, 2)) * across;
+                    const Eigen::Vector2d w = (p - Eigen::Vector2d(650, 505)) / f;
+                    const double r2 = w.squaredNorm();
+                    const Eigen::Vector2d q =
+                        Eigen::Vector2d(650, 505) + f * w * (1 + k1 * r2 + k2 * r2 * r2);
+                    smooth = seed % 2 ? 0 : 0.8 * smooth + 0.6 * 0.05 * dice.n();
+                    if (q.x() > 0 && q.y() > 0 && q.x() < 1279 && q.y() < 1023)
+                        line.push_back(q + (seed % 2 ? 0.05 * dice.n() : smooth) * across);
+                }
+                if (line.size() > 15) d.lines.push_back(line);
+            }
+            const auto r = calibrate_lens(d, {});
+            ASSERT_TRUE(r) << r.error().sentence();
+            if (bent_px < 2) {
+                EXPECT_NEAR(r->point_noise_px, 0.05, 0.02) << seed << " " << bent_px;
+            }
+            const Judgement& j = r->report.judgement;
+            if (bent_px == 0) {
+                EXPECT_EQ(j.verdict, Verdict::good) << j.reason.english();
+                EXPECT_FALSE(r->bent);
+            }
+            if (bent_px >= 2) {
+                EXPECT_NE(j.verdict, Verdict::good) << seed << " " << bent_px << " " << j.reason.english();
+                poor += !serves(j.verdict);
+                ++bent;
+                if (serves(j.verdict)) {
+                    EXPECT_LT(std::hypot(r->lens.cx - 650, r->lens.cy - 505), 150) << seed;
+                }
+            }
+        }
+    EXPECT_GT(poor, bent / 2);
+}
+
 TEST(Lens, RefusesBadLines) {
     auto d = bent_lines(-0.1, 0, 0.1, 4);
     d.lines[2][3].x() = std::nan("");
@@ -242,6 +293,134 @@ TEST(LaserPlane, ALineOfPointsIsUndetermined) {
     EXPECT_EQ(r->report.judgement.verdict, Verdict::undetermined);
     pairs.resize(3);
     EXPECT_FALSE(calibrate_laser_plane(camera, pairs, {}));
+}
+
+// Any camera, any laser plane of its field; pixels by the textbook's formulas.
+struct PlainPairs {
+    plain::Lens lens;
+    Pose camera_from_laser;
+    std::vector<LaserPair> pairs;
+    CameraModel camera() const {
+        CameraModel c;
+        c.fx = lens.fx, c.fy = lens.fy, c.cx = lens.cx, c.cy = lens.cy;
+        c.k1 = lens.k1, c.k2 = lens.k2, c.p1 = lens.p1, c.p2 = lens.p2;
+        c.width = lens.width, c.height = lens.height;
+        return c;
+    }
+};
+PlainPairs plain_pairs(unsigned seed, int count, double pixel_px, double place_mm,
+                       std::optional<double> k1 = std::nullopt) {
+    plain::Dice dice(seed);
+    PlainPairs p;
+    p.lens = plain::any_lens(dice);
+    if (k1) p.lens.k1 = *k1;
+    for (;;) {
+        p.pairs.clear();
+        p.camera_from_laser = plain::motion({dice.u(0.5, 1.2), dice.u(-0.3, 0.3), dice.u(-0.3, 0.3)},
+                                            {dice.u(-20, 20), dice.u(-20, 20), dice.u(250, 400)});
+        for (int tried = 0; tried < 100 * count && static_cast<int>(p.pairs.size()) < count; ++tried) {
+            const Eigen::Vector2d xz(dice.u(-60, 60), dice.u(-60, 60));
+            const plain::Vec3 at = p.camera_from_laser * plain::Vec3(xz.x(), 0, xz.y());
+            if (at.z() < 80 || !p.lens.has(p.lens.see(at), 2)) continue;
+            p.pairs.push_back({"P" + std::to_string(p.pairs.size() + 1),
+                               p.lens.see(at) + pixel_px * Eigen::Vector2d(dice.n(), dice.n()),
+                               xz + place_mm * Eigen::Vector2d(dice.n(), dice.n())});
+        }
+        if (static_cast<int>(p.pairs.size()) == count) return p;
+    }
+}
+
+// The formulas of the textbook: 10 % of the F of (4, 20) are beyond 2.249, 0.1 % beyond 7.096; odd ones from tables too.
+TEST(FTest, IsTheTables) {
+    EXPECT_NEAR(f_chance(2.2489, 4, 20), 0.1, 1e-5);
+    EXPECT_NEAR(f_chance(7.0960, 4, 20), 0.001, 1e-6);
+    EXPECT_NEAR(f_chance(161.4476, 1, 1), 0.05, 1e-6);
+    EXPECT_NEAR(f_chance(2.7109, 5, 20), 0.05, 1e-5);
+    EXPECT_NEAR(f_chance(20.515 / 5, 5, 1e7), 0.001, 1e-6) << "chi squared";
+    EXPECT_EQ(freed_chance(4, 4, 3, 10), 1);
+}
+
+TEST(LaserPlane, AForgottenDistortionIsNamed) {
+    int named = 0, served = 0, good = 0, false_sigma = 0;
+    constexpr int kSeeds = 40;
+    for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+        PlainPairs p = plain_pairs(seed, 15, 0.1, 0.02, -0.14);
+        CameraModel bare = p.camera();
+        bare.k1 = bare.k2 = bare.p1 = bare.p2 = 0;
+        const auto r = calibrate_laser_plane(bare, p.pairs, {});
+        ASSERT_TRUE(r) << r.error().sentence();
+        const Judgement& j = r->report.judgement;
+        named += j.reason.english().find("form of a lens") != std::string::npos;
+        good += j.verdict == Verdict::good;
+        if (!serves(j.verdict)) continue;
+        ++served;
+        const Vector6 e = difference(r->camera_from_laser, p.camera_from_laser);
+        false_sigma += (e.array().abs() > 4 * r->covariance.diagonal().array().sqrt()).any();
+    }
+    std::printf("%d named, %d served, %d good, %d beyond 4 sigma\n", named, served, good, false_sigma);
+    EXPECT_GT(named, kSeeds / 2);
+    EXPECT_LE(good, kSeeds / 10);
+    EXPECT_LE(false_sigma, kSeeds / 10);
+}
+
+TEST(LaserPlane, PixelsWrittenRowFirstAreNamed) {
+    int named = 0;
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+        PlainPairs p = plain_pairs(seed, 15, 0.1, 0.02);
+        for (auto& pair : p.pairs) pair.pixel = pair.pixel.reverse().eval();
+        const auto r = calibrate_laser_plane(p.camera(), p.pairs, {});
+        ASSERT_TRUE(r) << r.error().sentence();
+        EXPECT_NE(r->report.judgement.verdict, Verdict::good) << seed << r->report.judgement.reason;
+        EXPECT_FALSE(serves(r->report.judgement.verdict)) << seed << r->report.judgement.reason;
+        const bool said = r->report.judgement.reason.english().find("[v, u]") != std::string::npos;
+        named += said;
+        if (!said) std::printf("%s\n", r->report.judgement.reason.english().c_str());
+    }
+    EXPECT_GT(named, 12);
+}
+
+// Of five pairs a wrong one cannot be told; where what they miss shows it, they do not serve.
+TEST(LaserPlane, AWrongPairAmongFiveSeldomServes) {
+    int far = 0;
+    constexpr int kSeeds = 40;
+    for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+        PlainPairs p = plain_pairs(seed, 5, 0.1, 0.02);
+        p.pairs[2].laser_mm.x() += 1;
+        const auto r = calibrate_laser_plane(p.camera(), p.pairs, {});
+        ASSERT_TRUE(r) << r.error().sentence();
+        if (!serves(r->report.judgement.verdict)) continue;
+        EXPECT_LT(r->rms_px, 0.65) << seed;
+        const Vector6 e = difference(r->camera_from_laser, p.camera_from_laser);
+        far += (e.array().abs() > 4 * r->covariance.diagonal().array().sqrt()).any();
+    }
+    EXPECT_LE(far, kSeeds / 10);
+}
+
+// Honest pairs: the camera is not doubted, and the intervals hold.
+TEST(LaserPlane, HonestPairsServe) {
+    struct Case {
+        int count;
+        double pixel_px, place_mm, stated_mm;
+    };
+    for (const Case c : {Case{15, 0.1, 0.02, 0}, Case{6, 0.1, 0.01, 0}, Case{8, 0.2, 0, 0},
+                         Case{60, 0.05, 0, 0}, Case{25, 0.05, 0.15, 0.15}}) {
+        int doubted = 0, poor = 0, inside = 0, asked = 0;
+        constexpr int kSeeds = 60;
+        for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+            const PlainPairs p = plain_pairs(100 + seed, c.count, c.pixel_px, c.place_mm);
+            const auto r = calibrate_laser_plane(p.camera(), p.pairs, {}, c.stated_mm);
+            ASSERT_TRUE(r) << r.error().sentence();
+            EXPECT_EQ(r->notices.size(), 1U);
+            poor += !serves(r->report.judgement.verdict);
+            doubted += r->report.judgement.reason.english().find("form of a lens") != std::string::npos;
+            const Vector6 e = difference(r->camera_from_laser, p.camera_from_laser);
+            for (Eigen::Index k = 0; k < 6; ++k, ++asked)
+                inside += std::abs(e(k)) < 1.96 * std::sqrt(r->covariance(k, k));
+        }
+        EXPECT_LE(doubted, 1) << c.count << " " << c.pixel_px;
+        EXPECT_LE(poor, 1) << c.count << " " << c.pixel_px;
+        EXPECT_GT(inside, 0.90 * asked) << c.count;
+    }
 }
 
 }  // namespace

@@ -922,7 +922,7 @@
     </message>
     <message>
         <source>manual, full speed (T2)</source>
-        <translation>Hand, volle Geschwindigkeit (T2)</translation>
+        <translation>Hand, volles Tempo (T2)</translation>
     </message>
     <message>
         <source>external</source>
@@ -2968,7 +2968,7 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     </message>
     <message>
         <source>any but stopped and fault</source>
-        <translation>jede außer gestoppt und Störung</translation>
+        <translation>außer gestoppt und Störung</translation>
     </message>
     <message>
         <source>Push only in mode</source>
@@ -5140,7 +5140,7 @@ A %5  B %6  C %7 Grad</translation>
     </message>
     <message>
         <source>Stated</source>
-        <translation>Angegeben</translation>
+        <translation>Angabe</translation>
     </message>
 </context>
 <context>

@@ -406,7 +406,8 @@ Judgement judged(const LensResult& result, int lines_used, bool converged, bool 
                     result.straightness_after_px, result.point_noise_px);
     const char* plane = "check that the lines lie on a flat plane";
     if (stays_bent(result.straightness_after_px, result.point_noise_px)) {
-        if (result.full_model_px > 0 && !stays_bent(result.full_model_px, result.point_noise_px))
+        if (result.full_model_px > 0 && !result.centre_strays &&
+            result.full_model_px < LineNoise::kStraightTimes * result.point_noise_px)
             return {Verdict::usable, say(bent), "solve for k3, p1 and p2 too"};
         return {Verdict::poor, say(bent), plane};
     }

@@ -42,10 +42,9 @@ double LineNoise::sigma_px() const {
 }
 
 double LineNoise::form_factor(double rms_px, double points, int lines) const {
-    constexpr double kBegins = 1.3;  // neighbours that err alike a little stay below
     constexpr double kParts = 3;
     const double noise2 = sigma_px() * sigma_px(), all2 = rms_px * rms_px;
-    if (!(noise2 > 0) || !(all2 > kBegins * kBegins * noise2) ||
+    if (!(noise2 > 0) || !(all2 > kStraightTimes * kStraightTimes * noise2) ||
         !(f_chance(all2 / noise2, points, freedom()) < kNoAccident))
         return 1;
     const double alike = std::max(1.0, points / (kParts * lines));

@@ -12,6 +12,7 @@ namespace seamwright {
 
 class LineNoise {
   public:
+    static constexpr double kStraightTimes = 1.3;  // neighbours that err alike a little stay below
     // Points of one line, which of them are on it, and how far off it they lie.
     void add(const std::vector<Eigen::Vector2d>& points, const std::vector<char>& on,
              const std::vector<double>& off_px);
@@ -19,7 +20,7 @@ class LineNoise {
     double freedom() const;   // as many independent numbers know it as well
     // Points of a third of a line miss it alike where lens or plane is not the model's: the covariance for that, over the
     // one for points that miss it each by itself. One where the lines are as straight as their points let see (`rms_px`
-    // within 1.3 times their scatter, or within chance).
+    // within kStraightTimes their scatter, or within chance).
     double form_factor(double rms_px, double points, int lines) const;
 
   private:

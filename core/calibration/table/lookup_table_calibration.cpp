@@ -14,6 +14,7 @@
 #include "core/calibration/pose_set.h"
 #include "core/calibration/table/smooth_map.h"
 #include "core/calibration/table/table_nodes.h"
+#include "core/calibration/table/wrong_groups.h"
 #include "core/calibration/table/wrong_pairs.h"
 #include "core/numbers.h"
 #include "core/profile/units.h"
@@ -333,13 +334,20 @@ bool state_pairs(const std::vector<LaserPair>& pairs, const std::vector<char>& a
 }
 
 Judgement judged(const LookupTableResult& result, double count, int folded, const Text& wrong,
-                 int wrong_count) {
+                 int wrong_count, const std::optional<WrongGroup>& group) {
     const double hold_px = result.report.hold_out.rms_px / std::sqrt(2.0);  // per coordinate, as noise_px
     if (result.noise_px > kPoorPairs_px || hold_px > kPoorPairs_px)
         return {Verdict::poor,
                 Text("the pairs fit to {:.1f} px only",
                      std::isfinite(hold_px) ? std::max(hold_px, result.noise_px) : result.noise_px),
                 "check that pixels and laser points belong together"};
+    if (group)
+        return {Verdict::poor,
+                group->of_x ? Text("the positions at x = {:g} contradict the others by {:.2f} mm",
+                                   group->at_mm, group->shift_mm.norm())
+                            : Text("the positions at z = {:g} contradict the others by {:.2f} mm",
+                                   group->at_mm, group->shift_mm.norm()),
+                "measure these positions again, or leave them out"};
     if (folded > 0)
         return {Verdict::poor, Text("the map folds over in {} cells", folded),
                 "measure more positions there, or check the pairs nearby"};
@@ -409,7 +417,8 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
     describe(fitted.map, result.table, middle, report);
     int wrong_count = 0;
     const Text wrong = names_of_wrong(pairs, allowed, fitted.used, wrong_count);
-    report.judgement = judged(result, fitted.count(), folded, wrong, wrong_count);
+    report.judgement = judged(result, fitted.count(), folded, wrong, wrong_count,
+                              wrong_group(fitted.samples, width, height, result.noise_px));
     return result;
 }
 

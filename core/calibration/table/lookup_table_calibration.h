@@ -18,7 +18,8 @@
 // what few pairs leave open of the noise.
 //
 // Degenerate: pairs on one line of the image or of the laser plane. A target's position error is taken as
-// noise; an error common to all (a scale, a tilted stage) cannot be seen.
+// noise; an error common to all (a scale, a tilted stage) cannot be seen, one of all positions of one x or z only where
+// the sensor is a camera before a plane.
 
 #include <optional>
 #include <string>
@@ -61,7 +62,8 @@ struct LookupTableResult {
 // Error: no or impossible size, fewer than 6 pairs, NaN, a pixel outside the image, unknown or double ids,
 // metres, a step that is not positive or needs more than 16 million nodes. Verdict undetermined: pairs on one
 // line, fewer than 9 of them, no map that explains two thirds of them, no cell of the table without a hole.
-// poor: residual or hold-out beyond 3 px or folds. usable: wrong pairs left out, fewer than 25 pairs, less
+// poor: residual or hold-out beyond 3 px or folds, or the positions of one x or z are shifted together (wrong_groups.h).
+// usable: wrong pairs left out, fewer than 25 pairs, less
 // than half of the image covered, hold-out more than 1.6 times the noise. A wrong pair (beyond the 99.9 %
 // limit of the largest of all leave-one-out residuals, and more than a quarter of a pixel) is named and left
 // out.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/core/calibration/camera/camera_scene.h"
+#include "tests/core/calibration/independent/plain_world.h"
 
 namespace seamwright {
 namespace {
@@ -277,6 +278,104 @@ TEST(LookupTableCalibration, RefusesBadInput) {
     refused(good, 640, {{}, -1}, "step");
     refused(good, 640, {{}, 1e-3}, "step");
     refused(good, 640, {{}, INFINITY}, "step");
+}
+
+// Positions on a lattice of x and z as a stage goes to them, seen by `see`.
+template <class See>
+std::vector<LaserPair> staged(const See& see, int columns, int rows, double noise_px, unsigned seed) {
+    plain::Dice dice(seed);
+    std::vector<LaserPair> out;
+    for (int i = 0; i < columns * rows; ++i) {
+        const Eigen::Vector2d xz(-60 + 120.0 * (i % columns) / (columns - 1),
+                                 -60 + 120.0 * (i / columns) / (rows - 1));
+        const Eigen::Vector2d q = see(xz) + noise_px * Eigen::Vector2d(dice.n(), dice.n());
+        if (q.x() > 0 && q.y() > 0 && q.x() < 1279 && q.y() < 959)
+            out.push_back({"P" + std::to_string(i), q, xz});
+    }
+    return out;
+}
+plain::Motion any_light(plain::Dice& dice) {
+    return plain::motion({dice.u(0.8, 1.1), dice.u(-0.1, 0.1), dice.u(-0.1, 0.1)},
+                         {dice.u(-10, 10), dice.u(-10, 10), dice.u(300, 400)});
+}
+
+TEST(LookupTableCalibration, AColumnThatStoodElsewhereIsNamed) {
+    int named = 0, asked = 0;
+    for (unsigned seed = 1; seed <= 10; ++seed) {
+        plain::Dice dice(seed);
+        const plain::Lens lens = plain::any_lens(dice);
+        const plain::Motion light = any_light(dice);
+        const auto see = [&](const Eigen::Vector2d& xz) {
+            return lens.see(light * plain::Vec3(xz.x(), 0, xz.y()));
+        };
+        for (const bool of_x : {true, false})
+            for (const double at : {-60.0, 0.0, 45.0}) {
+                auto pairs = staged(see, 9, 9, 0.05, seed);
+                if (pairs.size() < 40) continue;
+                int moved = 0;
+                for (auto& p : pairs)
+                    if (std::abs(p.laser_mm(of_x ? 0 : 1) - at) < 1) p.laser_mm(of_x ? 1 : 0) += 0.5, ++moved;
+                if (moved < 4) continue;
+                const auto r = calibrate_lookup_table(1280, 960, pairs, {});
+                ASSERT_TRUE(r) << r.error().sentence();
+                ++asked;
+                // Either it is named, or the pairs of it are, which the smooth map does not follow.
+                const std::string reason = r->report.judgement.reason.english();
+                int left_out = 0;
+                for (std::size_t i = 0; i < pairs.size(); ++i)
+                    left_out +=
+                        !r->report.poses[i].used && std::abs(pairs[i].laser_mm(of_x ? 0 : 1) - at) < 1;
+                const bool said = reason.find(of_x ? "at x = " : "at z = ") != std::string::npos;
+                EXPECT_TRUE(!said || !serves(r->report.judgement.verdict));
+                if (said || left_out == moved) {
+                    ++named;
+                    continue;
+                }
+                std::printf("%u %c %g: %s\n", seed, of_x ? 'x' : 'z', at, reason.c_str());
+            }
+    }
+    EXPECT_GT(asked, 40);
+    EXPECT_GT(named, 0.9 * asked) << asked;  // a rim of few pairs may say nothing
+}
+
+// Lenses of any kind, a step in the light, noise of the stage: none is taken for a column.
+TEST(LookupTableCalibration, HonestLatticesAreNotDoubted) {
+    int asked = 0, doubted = 0;
+    for (unsigned seed = 1; seed <= 30; ++seed) {
+        plain::Dice dice(1000 + seed);
+        plain::Lens lens = plain::any_lens(dice);
+        const plain::Motion light = any_light(dice);
+        const Eigen::Vector2d bump = dice.box(30, 30, 0).head<2>();  // a fold at the rim is a column's shift
+        const int kind = static_cast<int>(seed % 6);
+        if (kind == 1) lens.k1 = -0.45, lens.k2 = 0.25;
+        const auto see = [&](const Eigen::Vector2d& xz) -> Eigen::Vector2d {
+            plain::Vec3 at(xz.x(), 0, xz.y());
+            if (kind == 2)
+                at.y() += 1.5 * std::exp(-(xz - bump).squaredNorm() / 800);  // light that is no plane
+            if (kind == 3) at.y() += 0.02 * (xz.x() > bump.x() ? xz.x() - bump.x() : 0.0);  // folded
+            const plain::Vec3 p = light * at;
+            if (kind == 4) {  // fisheye: the angle goes with the radius
+                const double r = std::hypot(p.x(), p.y());
+                return Eigen::Vector2d(lens.cx, lens.cy) + lens.fx * std::atan2(r, p.z()) / r * p.head<2>();
+            }
+            Eigen::Vector2d q = lens.see(p);
+            if (kind == 5) q.x() += 0.6 * std::sin(q.x() / 90);
+            return q;
+        };
+        for (const double px : {0.02, 0.1, 0.4}) {
+            const auto pairs = staged(see, 9, 9, px, seed);
+            if (pairs.size() < 30) continue;
+            const auto r = calibrate_lookup_table(1280, 960, pairs, {});
+            ASSERT_TRUE(r) << r.error().sentence();
+            ++asked;
+            if (r->report.judgement.reason.english().find("the positions at") != std::string::npos) {
+                ++doubted;
+                EXPECT_EQ(kind, 3) << px << " " << seed;
+            }
+        }
+    }
+    EXPECT_GT(asked, 60);
+    EXPECT_LE(doubted, 1);  // a fold with one column behind it is that column's shift
 }
 
 TEST(PixelInTable, InvertsTheTable) {

@@ -62,6 +62,7 @@ class DeskStyle final : public QProxyStyle {
         QStyleOptionSpinBox frame = *spin;
         frame.buttonSymbols = QAbstractSpinBox::NoButtons;
         QProxyStyle::drawComplexControl(control, &frame, painter, widget);
+        outline(*spin, *painter);
         draw_step(*spin, SC_SpinBoxDown, QAbstractSpinBox::StepDownEnabled, *painter, widget);
         draw_step(*spin, SC_SpinBoxUp, QAbstractSpinBox::StepUpEnabled, *painter, widget);
     }
@@ -92,6 +93,17 @@ class DeskStyle final : public QProxyStyle {
 
   private:
     static constexpr int kStep_px = 26, kTabSpace_px = 16;
+
+    // Fusion's own is darker than the window, and lost on a dark one.
+    static void outline(const QStyleOptionSpinBox& spin, QPainter& painter) {
+        const bool focus = spin.state & State_HasFocus;
+        painter.save();
+        painter.setRenderHint(QPainter::Antialiasing);
+        painter.setBrush(Qt::NoBrush);
+        painter.setPen(QPen(focus ? style::selection(spin.palette) : spin.palette.color(QPalette::Mid), 1));
+        painter.drawRoundedRect(QRectF(spin.rect).adjusted(0.5, 0.5, -0.5, -0.5), 3, 3);
+        painter.restore();
+    }
 
     void draw_step(const QStyleOptionSpinBox& spin, SubControl part, QAbstractSpinBox::StepEnabledFlag step,
                    QPainter& painter, const QWidget* widget) const {
@@ -134,6 +146,7 @@ void apply_look(QApplication& application, bool dark) {
         QPushButton:focus, QLineEdit:focus, QPlainTextEdit:focus, QToolButton:focus,
         QTableView:focus, QTreeView:focus, QListView:focus, QCheckBox:focus { border: 2px solid %1; }
         QPushButton#next_step { font-weight: bold; border: 2px solid %1; text-align: left; min-height: 40px; }
+        QPushButton#next_step[quiet="true"] { font-weight: normal; border: 1px solid %2; }
         QPushButton[next="true"] { font-weight: bold; border: 2px solid %1; }
         QPushButton#rail { text-align: left; border: none; background: transparent; padding: 0 6px; }
         QPushButton#rail:hover { background: %3; }

@@ -162,7 +162,10 @@ MainWindow::MainWindow(Studio& studio) : studio_(studio), desk_(studio.desk()) {
     refresh_person();
 }
 
-MainWindow::~MainWindow() = default;
+// Pages that are hidden say so: while the window is still whole.
+MainWindow::~MainWindow() {
+    hide();
+}
 
 QDockWidget* MainWindow::add_dock(const QString& name, const QString& title, QWidget* view) {
     auto* dock = new QDockWidget(title, this);
@@ -235,8 +238,13 @@ void MainWindow::make_central() {
     connect(prove, &ProvePage::report_wanted, this, &MainWindow::make_report);
     auto* accept = new AcceptPage(desk_, views_);
     connect(accept, &AcceptPage::told, this, &MainWindow::tell_done);
+    auto* calibrate = new CalibratePage(desk_, views_);
+    connect(calibrate, &CalibratePage::under_way, this, [this](const QString& words) {
+        calibrating_ = words;
+        refresh_next();
+    });
     const std::initializer_list<StepPage*> pages{new CellPage(desk_, views_),
-                                                 new CalibratePage(desk_, views_),
+                                                 calibrate,
                                                  new TeachPage(desk_, views_),
                                                  new AlignPage(desk_, views_),
                                                  new RegionsPage(desk_, views_),

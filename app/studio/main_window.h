@@ -98,6 +98,7 @@ class MainWindow : public QMainWindow {
     RunPage* run_page_ = nullptr;
     ManualWindow* manual_ = nullptr;  // once it was asked for
     QPushButton* next_ = nullptr;
+    QString calibrating_;  // what a guided calibration says that it is at; empty: none is shown
     QFrame* trouble_ = nullptr;
     QLabel* trouble_text_ = nullptr;
     QLabel *sensors_ = nullptr, *robots_ = nullptr, *push_ = nullptr, *events_ = nullptr, *saved_ = nullptr,

@@ -5,6 +5,7 @@
 #include <QKeyEvent>
 #include <QLineEdit>
 #include <QStatusBar>
+#include <QStyle>
 #include <algorithm>
 #include <cmath>
 
@@ -64,9 +65,20 @@ void MainWindow::refresh_next() {
         next_->setAccessibleName(text);
         next_->setToolTip(text);
     };
+    // A calibration that is led through has the marked key itself.
+    const bool led = !calibrating_.isEmpty() && !push_waits();
+    if (next_->property("quiet").toBool() != led) {
+        next_->setProperty("quiet", led);
+        next_->style()->unpolish(next_);
+        next_->style()->polish(next_);
+    }
     if (push_waits()) return say(tr("A push waits for your answer: go to Run"));
-    for (const StepState& s : desk_.steps())
-        if (s.status == StepStatus::next) return say(tr("Next: %1 - %2").arg(step_name(s.step), s.why));
+    for (const StepState& s : desk_.steps()) {
+        if (s.status != StepStatus::next) continue;
+        if (!led) return say(tr("Next: %1 - %2").arg(step_name(s.step), s.why));
+        return say(s.step == Step::calibrate ? calibrating_
+                                             : tr("%1. Afterwards: %2").arg(calibrating_, step_name(s.step)));
+    }
 }
 
 // What is not renewed is not called ok: a sensor by the age of its newest frame, a robot by the age of what it

@@ -4062,6 +4062,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
 <context>
     <name>seamwright::MainWindow</name>
     <message>
+        <source>%1. Afterwards: %2</source>
+        <translation>%1. Danach: %2</translation>
+    </message>
+    <message>
         <source>A job is running: end it first, the window is built anew for this.</source>
         <translation>Es läuft ein Auftrag: erst beenden, das Fenster wird dafür neu aufgebaut.</translation>
     </message>

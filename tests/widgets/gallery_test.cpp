@@ -8,6 +8,7 @@
 #include <QSignalSpy>
 #include <QTest>
 #include <QVBoxLayout>
+#include <QWheelEvent>
 #include <cmath>
 #include <filesystem>
 #include <random>
@@ -292,6 +293,49 @@ TEST(Gallery, Scene) {
     QTest::mouseClick(canvas, Qt::LeftButton, {},
                       canvas->mapFrom(&view, view.to_screen({120, 130, 0})).toPoint());
     EXPECT_NEAR(z, 0, 0.01);
+}
+
+// A project without a mesh: its spots fill the view as they come, and every view finds them again.
+TEST(Gallery, SceneWithoutAMesh) {
+    SceneView view;
+    if (!view.has_opengl()) GTEST_SKIP() << "no OpenGL 3.2 on this display";
+    view.resize(820, 480);
+    view.show();
+    ASSERT_TRUE(QTest::qWaitForWindowExposed(&view));
+    view.set_part({});
+    std::vector<SceneSpot> spots;
+    for (const DoorSpot& one : default_door_spots()) {
+        SceneSpot spot;
+        spot.id = one.id;
+        spot.workobject_from_sensor = one.workobject_from_sensor;
+        spot.reference_mm = one.edge_mm;
+        spots.push_back(spot);
+    }
+    const auto spread = [&] {
+        QRectF box;
+        int inside = 0;
+        for (const SceneSpot& s : spots) {
+            const QPointF at = view.to_screen(s.workobject_from_sensor * s.reference_mm);
+            inside += view.rect().contains(at.toPoint());
+            box |= QRectF(at - QPointF(1, 1), QSizeF(2, 2));
+        }
+        return inside == static_cast<int>(spots.size())
+                   ? std::max(box.width() / view.width(), box.height() / view.height())
+                   : 0.0;
+    };
+    view.set_spots(spots);
+    EXPECT_GT(spread(), 0.3) << "as they come";
+    QWidget* canvas = view.focusProxy();
+    for (const auto which : {SceneView::View::fit, SceneView::View::front, SceneView::View::iso}) {
+        for (int i = 0; i < 12; ++i) {
+            QWheelEvent away(QPointF(400, 240), canvas->mapToGlobal(QPointF(400, 240)), {}, QPoint(0, -240),
+                             Qt::NoButton, {}, Qt::NoScrollPhase, false);
+            QApplication::sendEvent(canvas, &away);
+        }
+        EXPECT_LT(spread(), 0.2);
+        view.show_view(which);
+        EXPECT_GT(spread(), 0.3);
+    }
 }
 
 TEST(Gallery, ChartsAndEditors) {

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/calibration/robot_repeatability.h"
 #include "devices/exchange/image_file.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
@@ -18,6 +19,9 @@ namespace seamwright {
 namespace {
 
 constexpr double kStillSeconds = 0.5, kStillMm = 0.02, kStillDeg = 0.005;
+// Of the radius: so near to each other lie the circles of one sphere in two frames one after the other, the robot being
+// jogged.
+constexpr double kSameCircle = 0.25, kSameRadius = 0.1;
 // Nearer than this to a capture nothing is captured by itself.
 constexpr double kNewMm = 3, kNewDeg = 1;
 
@@ -39,6 +43,23 @@ class CmdSession final : public QUndoCommand {
     SessionState before_, after_;
     Apply apply_;
     bool done_ = false;  // the edit is made before its command is pushed
+};
+
+// The session's folder against the one that is put aside; either way is the same deed.
+class CmdAnew final : public QUndoCommand {
+  public:
+    using Exchange = std::function<void(std::filesystem::path&)>;
+    CmdAnew(const QString& text, std::filesystem::path parked, Exchange exchange)
+        : QUndoCommand(text), parked_(std::move(parked)), exchange_(std::move(exchange)) {}
+    void undo() override { exchange_(parked_); }
+    void redo() override {
+        if (std::exchange(done_, true)) exchange_(parked_);
+    }
+
+  private:
+    std::filesystem::path parked_;
+    Exchange exchange_;
+    bool done_ = false;
 };
 
 }  // namespace
@@ -106,6 +127,7 @@ void CalibrationDesk::close() {
     session_.reset();
     undo_.clear();
     live_ = {};
+    circle_.reset();
     automatic_ = false;
     emit changed();
 }
@@ -170,6 +192,18 @@ Expected<void> CalibrationDesk::set_nominal_mounting(const Pose& flange_from_sen
     nlohmann::json settings = before.settings;
     settings["nominal_flange_from_sensor"] = pose_json(flange_from_sensor);
     return edited(session_->set_settings(std::move(settings)), tr("Mounting from the drawing"), before);
+}
+
+Expected<void> CalibrationDesk::state_repeatability(double mm, double deg) {
+    const SessionState before = session_->state();
+    nlohmann::json settings = before.settings;
+    settings.erase("robot");
+    if (mm > 0) {
+        SEAM_OK(check_repeatability({mm, rad_from_deg(deg)}));
+        settings["robot"] = {{"sigma_mm", mm}, {"sigma_deg", deg}};
+    }
+    if (settings == before.settings) return {};
+    return edited(session_->set_settings(std::move(settings)), tr("State the robot's repeatability"), before);
 }
 
 bool CalibrationDesk::convention_in_doubt() const {
@@ -400,6 +434,13 @@ void CalibrationDesk::look() {
         QMetaObject::invokeMethod(this, [this, live, generation] {
             look_pending_ = false;
             if (generation != generation_) return;
+            // A chance likeness does not stay from frame to frame.
+            const auto before = std::exchange(circle_, live->picture.circle);
+            if (circle_ && !(before && (*before - *circle_).head<2>().norm() < kSameCircle * before->z() &&
+                             std::abs(before->z() - circle_->z()) < kSameRadius * before->z())) {
+                live->seen = false;
+                live->words = tr("A circle, but not yet twice at the same place: hold the sensor still.");
+            }
             live_ = std::move(*live);
             emit looked();
         });
@@ -449,14 +490,25 @@ Expected<void> CalibrationDesk::finish(bool use) {
     return noted;
 }
 
+void CalibrationDesk::exchange(std::filesystem::path& parked) {
+    if (!session_) return;
+    cancel();
+    ++generation_;
+    if (auto ok = session_->exchange(parked); !ok) emit refused(shown_error(ok.error()));
+    emit changed();
+    solve_when_due();
+}
+
 Expected<void> CalibrationDesk::begin_anew() {
     if (!session_) return usage_error("no calibration is open", "calibrate");
     cancel();
     ++generation_;
-    auto done = session_->begin_anew();
-    undo_.clear();
+    auto parked = session_->begin_anew();
+    if (parked)
+        undo_.push(new CmdAnew(tr("Begin anew"), std::move(*parked),
+                               [this](std::filesystem::path& folder) { exchange(folder); }));
     emit changed();
-    return done;
+    return parked ? Expected<void>() : tl::unexpected(parked.error());
 }
 
 }  // namespace seamwright

@@ -31,8 +31,8 @@ namespace seamwright {
 struct LiveTarget {
     EntryPicture picture;  // empty points: nothing was seen
     FramePtr frame;
-    bool seen = false;
-    QString words;  // what is not seen, and what to change
+    bool seen = false;  // a sphere: in two frames one after the other, at the same place
+    QString words;      // what is not seen, and what to change
 };
 
 class CalibrationDesk : public QObject {
@@ -62,6 +62,8 @@ class CalibrationDesk : public QObject {
     Expected<void> remove(const std::string& id);
     Expected<void> set(const std::string& setting, double value);
     Expected<void> set_nominal_mounting(const Pose& flange_from_sensor);
+    // One standard deviation of an arrival, an axis; mm 0: not stated. Error (input): out of range.
+    Expected<void> state_repeatability(double mm, double deg);
 
     // --- asynchronous; refused() says why not
     void capture(bool verification);
@@ -90,7 +92,7 @@ class CalibrationDesk : public QObject {
     // The session's answer into the project, undoable there: all its calibrations or none are kept, and with
     // `use` put to use. Error: not verified, nothing solved, a sensor that the project does not know.
     Expected<void> finish(bool use);
-    Expected<void> begin_anew();
+    Expected<void> begin_anew();  // undoable
 
   signals:
     void changed();  // captures, marks, settings, solution
@@ -113,6 +115,7 @@ class CalibrationDesk : public QObject {
     std::optional<Pose> robot_pose() const;  // of the session's robot, as last told
     Expected<nlohmann::json> capture_settings() const;
     void watch_robot();
+    void exchange(std::filesystem::path& parked);
     void set_doing(const QString& what);
     Expected<void> edited(Expected<void> done, const QString& text, const SessionState& before);
 
@@ -126,6 +129,7 @@ class CalibrationDesk : public QObject {
     std::uint64_t generation_ = 0;  // of the session: results of an older one are dropped
     std::uint64_t looked_number_ = 0;
     LiveTarget live_;
+    std::optional<Eigen::Vector3d> circle_;  // of the sphere in the frame before: x, z, radius
     double stillness_ = 0;
     std::optional<ConventionAnswer> convention_;
     SessionState convention_of_;

@@ -1,6 +1,9 @@
 #include "widgets/desk/calibration_series.h"
 
+#include <algorithm>
+
 #include "projects/calibrate/session/guide.h"
+#include "projects/calibrate/session/shot.h"
 
 namespace seamwright {
 
@@ -28,12 +31,29 @@ int CalibrationSeries::kept_back() const {
 }
 
 int CalibrationSeries::wanted() const {
-    return calibration_.session().method().advised + kept_back();
+    return goal_ + kept_back();
+}
+
+bool CalibrationSeries::extends() const {
+    const CalibrationSession& s = calibration_.session();
+    if (s.solving_captures() < s.method().advised) return false;
+    return (s.solution() && !serves(s.solution()->verdict())) || s.verification_captures() >= kept_back();
+}
+
+int CalibrationSeries::goal() const {
+    const CalibrationSession& s = calibration_.session();
+    return extends() ? s.solving_captures() + kRound : std::max(s.method().advised, s.solving_captures());
+}
+
+int CalibrationSeries::more() const {
+    const CalibrationSession& s = calibration_.session();
+    const int open = goal() - s.solving_captures() + std::max(0, kept_back() - s.verification_captures());
+    if (s.state().captures.empty()) return open;
+    return std::min(open, static_cast<int>(next_poses(s, known_mounting(s, desk_.project())).size()));
 }
 
 bool CalibrationSeries::verifies() const {
-    const CalibrationSession& s = calibration_.session();
-    return s.solving_captures() >= s.method().advised;
+    return calibration_.session().solving_captures() >= goal_;
 }
 
 void CalibrationSeries::set_doing(Doing doing) {
@@ -44,6 +64,7 @@ void CalibrationSeries::set_doing(Doing doing) {
 
 void CalibrationSeries::start() {
     if (running() || !calibration_.is_open() || calibration_.busy()) return;
+    goal_ = goal();
     next();
 }
 
@@ -53,11 +74,13 @@ void CalibrationSeries::stop() {
 
 void CalibrationSeries::next() {
     const CalibrationSession& s = calibration_.session();
-    if (verifies() && s.verification_captures() >= kept_back()) return set_doing(Doing::nothing);
+    const bool poor = s.solution() && !serves(s.solution()->verdict());
+    if (verifies() && (poor || s.verification_captures() >= kept_back())) return set_doing(Doing::nothing);
     const auto place = next_place(s, desk_.project());
     if (!place) {
         if (s.state().captures.empty()) return capture();
         set_doing(Doing::nothing);
+        if (poor) return;  // every capture is needed to solve with
         for (const std::string& id : to_keep_back(s, kept_back()))
             (void)calibration_.set_verification(id, true);
         return;

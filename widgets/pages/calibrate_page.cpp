@@ -29,6 +29,7 @@ CalibratePage::CalibratePage(Desk& desk, const Views& views)
           desk, views, Step::calibrate,
           tr("From pixels to millimetres on the flange. Each sensor uses one calibration; the others stay "
              "selectable.")) {
+    QVBoxLayout& head = make_head();
     overview_ = new QWidget;
     auto* all = new QVBoxLayout(overview_);
     all->setContentsMargins(0, 0, 0, 0);
@@ -66,9 +67,10 @@ CalibratePage::CalibratePage(Desk& desk, const Views& views)
     guided_ = new GuidedPage(desk_);
     guided_->hide();
     box().addWidget(guided_);
+    head.addWidget(guided_->head());
+    connect(guided_, &GuidedPage::under_way, this, &CalibratePage::under_way);
     connect(guided_, &GuidedPage::left, this, [this] {
-        guided_->hide();
-        overview_->show();
+        show_guided(false);
         if (isVisible()) refresh();
     });
     connect(guided_, &GuidedPage::proposed, this, [this](const std::optional<Pose>& base_from_flange) {
@@ -89,8 +91,20 @@ void CalibratePage::begin(const std::string& method) {
     if (!guided_->begin(MethodId(method), SensorId(sensor_->currentText().toStdString()),
                         RobotId(robot_->currentText().toStdString())))
         return;
-    overview_->hide();
-    guided_->show();
+    show_guided(true);
+}
+
+// The head of a calibration stands in place of the step's own: both would leave too little of a small window.
+void CalibratePage::show_guided(bool guided) {
+    for (const char* own : {"page_title", "page_state"}) head()->findChild<QLabel*>(own)->setVisible(!guided);
+    overview_->setVisible(!guided);
+    guided_->setVisible(guided);
+    entered();
+}
+
+// Beside a calibration the scene shows where the robot is to go; the frozen contour is another step's.
+void CalibratePage::entered() {
+    if (guided_->isVisible()) views_.raise(views_.scene);
 }
 
 // One a sensor that is connected and has none yet, with the robot of its cell.

@@ -14,12 +14,18 @@ class CalibratePage : public StepPage {
   public:
     CalibratePage(Desk& desk, const Views& views);
 
+  signals:
+    // GuidedPage::under_way
+    void under_way(const QString& words);
+
   protected:
     void refresh() override;
+    void entered() override;
 
   private:
     void take_simulated();
     void begin(const std::string& method);
+    void show_guided(bool guided);
 
     GuidedPage* guided_;
     QWidget* overview_;

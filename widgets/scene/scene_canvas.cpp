@@ -181,11 +181,10 @@ void SceneCanvas::show_view(SceneView::View view) {
         camera->SetPosition(eye.x(), eye.y(), eye.z());
         camera->SetViewUp(up.x(), up.y(), up.z());
     }
-    double box[6];
-    if (part && part->GetVisibility())
-        part->GetBounds(box);
-    else
-        renderer_->ComputeVisiblePropBounds(box);
+    double box[6] = {1, -1, 1, -1, 1, -1};
+    if (part && part->GetVisibility()) part->GetBounds(box);
+    // A part without a mesh has no bounds; then all that is there counts.
+    if (!(box[0] <= box[1])) renderer_->ComputeVisiblePropBounds(box);
     if (box[0] <= box[1]) {
         renderer_->ResetCamera(box);
         camera->Zoom(1.1);

@@ -319,9 +319,12 @@ void SceneView::set_part_shift(const Pose& workobject_from_part) {
 
 void SceneView::set_spots(const std::vector<SceneSpot>& spots) {
     if (same(impl_->spots, spots)) return;
+    const bool appear = impl_->spots.empty() && !spots.empty();
     impl_->spots = spots;
     for (const Layer layer : {Layer::spots, Layer::sensors, Layer::regions, Layer::corrections})
         impl_->redraw(layer);
+    // Where no mesh is to come the spots are all there is to look at.
+    if (appear && impl_->mesh.points.empty()) show_view(View::iso);
 }
 
 void SceneView::set_regions(const std::vector<SceneRegion>& regions) {

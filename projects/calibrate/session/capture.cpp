@@ -9,7 +9,6 @@
 
 #include "core/calibration/board/board.h"
 #include "core/calibration/camera/camera.h"
-#include "core/calibration/sphere/circle_section.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/input/entry.h"
@@ -18,6 +17,7 @@
 #include "projects/calibrate/input/stripe_line_points.h"
 #include "projects/calibrate/methods/stripe_frames.h"
 #include "projects/calibrate/session/apex_pair.h"
+#include "projects/calibrate/session/sphere_sight.h"
 #include "projects/calibrate/solution/camera_json.h"
 #include "projects/measure/measure.h"
 #include "projects/station/acquire.h"
@@ -29,16 +29,6 @@ using nlohmann::json;
 
 constexpr int kLeastLinePoints = 200;
 constexpr std::size_t kDrawnPoints = 160;
-
-// A cut through the sphere is never larger than the sphere.
-CircleSectionLimits sphere_limits(double radius_mm) {
-    CircleSectionLimits limits;
-    if (radius_mm > 0) {
-        limits.largest_radius_mm = 1.05 * radius_mm;
-        limits.smallest_radius_mm = 0.15 * radius_mm;
-    }
-    return limits;
-}
 
 double radius_of(const json& settings) {
     const auto it = settings.find("radius_mm");
@@ -57,9 +47,9 @@ Expected<json> sphere_entry(const json& settings, const SensorSetup& sensor, con
             base ? "bring the stripe onto the sphere" : "calibrate camera and laser plane first");
     Profile profile;
     SEAM_OK(track_capture(capture, sensor.filter, profile));
-    if (!find_circle_section(profile, sphere_limits(radius_of(settings))))
-        return input_error("no circle of the sphere is seen in the profile", Text("sensor {}", sensor.id),
-                           "bring the stripe onto the sphere, a little off its middle, and check its radius");
+    // Which way a device counts that delivers profiles is its own.
+    SEAM_OK(sphere_in_profile(profile, radius_of(settings), frame.profile.size() > 0,
+                              Text("sensor {}", sensor.id)));
     json points = json::array();
     for (std::size_t i = 0; i < profile.size(); ++i)
         if (!std::isnan(profile.x_mm[i]) && !std::isnan(profile.z_mm[i]))
@@ -458,7 +448,8 @@ EntryPicture entry_picture(const CalibrationMethod& method, const json& settings
             if (!std::isnan(o->profile.x_mm[i]) && !std::isnan(o->profile.z_mm[i]))
                 all.emplace_back(o->profile.x_mm[i], o->profile.z_mm[i]);
         picture.points = thinned(all);
-        if (const auto circle = find_circle_section(o->profile, sphere_limits(radius_of(settings)))) {
+        if (const auto circle = sphere_in_profile(o->profile, radius_of(settings), true, "")) {
+            picture.circle = {circle->x_mm, circle->z_mm, circle->radius_mm};
             std::vector<Eigen::Vector2d> arc;
             for (const int i : circle->inliers)
                 arc.emplace_back(o->profile.x_mm[static_cast<std::size_t>(i)],

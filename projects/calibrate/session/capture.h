@@ -43,6 +43,7 @@ struct EntryPicture {
     std::vector<Eigen::Vector2d> points;  // all that was seen, thinned
     std::vector<Eigen::Vector2d>
         outline;  // of the target found in it: closed for a board, the arc for a sphere
+    std::optional<Eigen::Vector3d> circle;  // of a sphere: x, z of its middle and its radius, mm
 };
 EntryPicture entry_picture(const CalibrationMethod& method, const nlohmann::json& settings,
                            const nlohmann::json& entry);

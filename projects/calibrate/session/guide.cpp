@@ -63,29 +63,36 @@ bool taken(const CalibrationSession& session, const Pose& at) {
 
 }  // namespace
 
-std::optional<NextPose> next_pose(const CalibrationSession& session,
-                                  const std::optional<Pose>& flange_from_sensor) {
+std::vector<NextPose> next_poses(const CalibrationSession& session,
+                                 const std::optional<Pose>& flange_from_sensor) {
     const auto* views = views_of(session.method());
     const CalibrationCapture* first = first_with_pose(session);
-    if (!views || !first) return std::nullopt;
+    if (!views || !first) return {};
     const CalibrationSolution* solution = session.solution();
-    const auto proposed = [&]() -> std::optional<NextPose> {
-        for (const PoseProposal& p : solution ? solution->proposals : std::vector<PoseProposal>())
-            if (!taken(session, p.base_from_flange)) return NextPose{p.base_from_flange, true};
-        return std::nullopt;
-    };
-    if (solution && solution->verdict() == Verdict::undetermined)
-        if (auto pose = proposed()) return pose;
-    const auto known = mounting(session, flange_from_sensor);
-    if (!known) return std::nullopt;
-    const Pose& x = *known;
-    // The first capture stands for the first view; the others follow from it.
-    const Pose base_from_target = *first->base_from_flange * x * target_from_sensor(views->front()).inverse();
-    for (const TargetPlace& view : *views) {
-        const Pose pose = base_from_target * target_from_sensor(view) * x.inverse();
-        if (!taken(session, pose)) return NextPose{pose, false};
+    std::vector<NextPose> proposed, poses;
+    for (const PoseProposal& p : solution ? solution->proposals : std::vector<PoseProposal>())
+        if (!taken(session, p.base_from_flange)) proposed.push_back({p.base_from_flange, true});
+    const bool open = solution && solution->verdict() == Verdict::undetermined;
+    if (const auto known = mounting(session, flange_from_sensor)) {
+        const Pose& x = *known;
+        // The first capture stands for the first view; the others follow from it.
+        const Pose base_from_target =
+            *first->base_from_flange * x * target_from_sensor(views->front()).inverse();
+        for (const TargetPlace& view : *views) {
+            const Pose pose = base_from_target * target_from_sensor(view) * x.inverse();
+            if (!taken(session, pose)) poses.push_back({pose, false});
+        }
+    } else if (!open) {
+        return {};
     }
-    return proposed();
+    poses.insert(open ? poses.begin() : poses.end(), proposed.begin(), proposed.end());
+    return poses;
+}
+
+std::optional<NextPose> next_pose(const CalibrationSession& session,
+                                  const std::optional<Pose>& flange_from_sensor) {
+    const auto poses = next_poses(session, flange_from_sensor);
+    return poses.empty() ? std::nullopt : std::optional(poses.front());
 }
 
 std::optional<SimulatedStart> simulated_start(const CalibrationMethod& method,

@@ -18,6 +18,10 @@ struct NextPose {
 std::optional<NextPose> next_pose(const CalibrationSession& session,
                                   const std::optional<Pose>& flange_from_sensor);
 
+// All that are left as of now, in their order; what the solver asks for changes with every capture.
+std::vector<NextPose> next_poses(const CalibrationSession& session,
+                                 const std::optional<Pose>& flange_from_sensor);
+
 // Where a simulated robot has its target in view: the first capture's place. nullopt: the method needs no
 // target, the settings are not those of a simulated cell.
 struct SimulatedStart {

@@ -97,20 +97,31 @@ fs::path CalibrationSession::folder_of(const fs::path& project_file) {
 
 namespace {
 
-Expected<void> rename_aside(const fs::path& folder) {
+Expected<void> rename_folder(const fs::path& from, const fs::path& to) {
     std::error_code code;
-    if (!fs::exists(folder, code)) return {};
+    fs::rename(from, to, code);
+    if (code) return file_error(Text("the folder cannot be moved: {}", code.message()), from.string());
+    return {};
+}
+
+// Where it went; empty: there was none.
+Expected<fs::path> rename_aside(const fs::path& folder) {
+    std::error_code code;
+    if (!fs::exists(folder, code)) return fs::path();
     std::string time = utc_now();
     std::replace(time.begin(), time.end(), ':', '.');
-    fs::rename(folder, fs::path(folder.string() + "-" + time), code);
-    if (code) return file_error(Text("the folder cannot be moved: {}", code.message()), folder.string());
-    return {};
+    const std::string aside = folder.string() + "-" + time;
+    fs::path to = aside;
+    for (int n = 2; fs::exists(to, code); ++n) to = fmt::format("{}-{}", aside, n);
+    SEAM_OK(rename_folder(folder, to));
+    return to;
 }
 
 }  // namespace
 
 Expected<void> CalibrationSession::put_aside(const fs::path& project_file) {
-    return rename_aside(folder_of(project_file));
+    SEAM_OK(rename_aside(folder_of(project_file)));
+    return {};
 }
 
 Expected<void> CalibrationSession::copy_all(const fs::path& from_project, const fs::path& to_project) {
@@ -459,13 +470,34 @@ Expected<void> CalibrationSession::set_used_as(std::vector<std::string> calibrat
     return {};
 }
 
-Expected<void> CalibrationSession::begin_anew() {
-    SEAM_OK(rename_aside(folder_));
+Expected<fs::path> CalibrationSession::begin_anew() {
+    SEAM_TRY(auto parked, rename_aside(folder_));
     state_.captures.clear();
     last_number_ = 0;
     solution_.reset();
     notices_.clear();
-    return set_state(state_);
+    SEAM_OK(set_state(state_));
+    return parked;
+}
+
+Expected<void> CalibrationSession::exchange(fs::path& parked) {
+    std::error_code code;
+    if (parked.empty() || !fs::exists(parked / "session.json", code))
+        return file_error("the session that was put aside is no longer there", parked.string());
+    SEAM_TRY(auto aside, rename_aside(folder_));
+    if (auto ok = rename_folder(parked, folder_); !ok) {
+        if (!aside.empty()) (void)rename_folder(aside, folder_);
+        return ok;
+    }
+    CalibrationSession other = *this;
+    other.state_ = {};
+    other.used_as_.clear();
+    other.solution_.reset();
+    other.notices_.clear();
+    SEAM_OK(other.read());
+    *this = std::move(other);
+    parked = std::move(aside);
+    return {};
 }
 
 }  // namespace seamwright

@@ -132,8 +132,12 @@ class CalibrationSession {
     SessionStage stage() const;
     const std::vector<std::string>& used_as() const { return used_as_; }  // calibrations; empty: not used yet
     Expected<void> set_used_as(std::vector<std::string> calibration_ids);
-    // The session so far is kept under its time, this one starts empty with the same settings.
-    Expected<void> begin_anew();
+    // The session so far is kept under its time, this one starts empty with the same settings. Returned is the folder
+    // that holds it now; empty: there was nothing on disk.
+    Expected<std::filesystem::path> begin_anew();
+    // Takes up the session that begin_anew() has put aside there, and puts this one aside in its place: `parked` is then
+    // this one's folder. Done twice, all is as before. Error (file): nothing is parked there, it cannot be moved or read.
+    Expected<void> exchange(std::filesystem::path& parked);
 
   private:
     CalibrationSession() = default;

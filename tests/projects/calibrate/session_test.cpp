@@ -9,6 +9,7 @@
 
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/cell.h"
+#include "projects/calibrate/methods/example/target_views.h"
 #include "projects/calibrate/session/answer.h"
 #include "projects/calibrate/session/capture.h"
 #include "projects/calibrate/session/guide.h"
@@ -160,6 +161,81 @@ TEST_F(Session, BadPoseIsSpottedAndLeftOut) {
     EXPECT_FALSE(s.verification().confirmed);
     EXPECT_GT(s.verification().worst_mm, s.verification().limit_mm);
     EXPECT_EQ(s.stage(), SessionStage::verify);
+}
+
+// Put aside and taken up again, with captures, marks, solution and what it is used as; and once more the other way.
+TEST_F(Session, BeginningAnewCanBeTakenBack) {
+    CalibrationSession s = open();
+    capture(s, 7);
+    ASSERT_TRUE(s.leave_out("P3", true));
+    solve(s);
+    ASSERT_TRUE(s.set_used_as({"sphere 1"}));
+    const json data = s.data(), solved = s.solution()->document;
+    auto parked = s.begin_anew();
+    ASSERT_TRUE(parked) << parked.error().sentence();
+    EXPECT_TRUE(fs::exists(*parked / "captures" / "P7.json"));
+    capture(s, 2);
+    const json newer = s.data();
+    EXPECT_TRUE(s.exchange(*parked));
+    EXPECT_EQ(s.data(), data);
+    EXPECT_TRUE(s.state().captures[2].left_out);
+    EXPECT_EQ(s.used_as(), std::vector<std::string>{"sphere 1"});
+    ASSERT_TRUE(s.solution());
+    EXPECT_EQ(s.solution()->document, solved);
+    EXPECT_EQ(s.free_id(), "P8");
+    EXPECT_EQ(open().data(), data) << "on disk too";
+    EXPECT_TRUE(s.exchange(*parked));
+    EXPECT_EQ(s.data(), newer);
+    EXPECT_EQ(s.free_id(), "P3");
+    // What is no longer there leaves this one as it is.
+    fs::path gone = folder / "gone";
+    EXPECT_FALSE(s.exchange(gone));
+    EXPECT_EQ(open().data(), newer);
+}
+
+// The views are as many as the method advises, and one to keep back; each capture takes one off.
+TEST_F(Session, PosesThatAreLeftAreCounted) {
+    CalibrationSession s = open();
+    const Pose mounting = truth().flange_from_sensor;
+    EXPECT_TRUE(next_poses(s, mounting).empty());
+    capture(s, 1);
+    const std::size_t all = next_poses(s, mounting).size();
+    EXPECT_GE(static_cast<int>(all), s.method().advised);
+    capture(s, 4);
+    EXPECT_EQ(next_poses(s, mounting).size(), all - 4);
+    EXPECT_TRUE(next_poses(s, std::nullopt).empty());
+}
+
+// As many as are advised serve, though nobody has stated what the robot scatters.
+TEST_F(Session, TheAdvisedPosesServe) {
+    const CalibrationMethod& method = *find_method("tcp-sphere");
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        CellSettings settings = default_cell_settings();
+        settings.scene = Scene::sphere;
+        settings.seed = seed;
+        const auto its = SimulatedCell::open(settings).value();
+        Calibration base;
+        base.model = its->sensor_model();
+        json data = default_settings(method);
+        json list = json::array();
+        for (int i = 0; i < method.advised; ++i) {
+            const Pose at = settings.base_from_target *
+                            target_from_sensor(sphere_views()[static_cast<std::size_t>(i)]) *
+                            its->flange_from_sensor().inverse();
+            its->move_to(at);
+            Frame frame;
+            its->render(*its->true_flange(), 100 + static_cast<std::uint64_t>(i), frame);
+            const auto taken = capture_shot(method, data, sensor(), &base, frame, nullptr, at);
+            ASSERT_TRUE(taken) << taken.error().sentence();
+            list.push_back(taken->capture.entry);
+            list.back()["id"] = "P" + std::to_string(i + 1);
+        }
+        data["observations"] = std::move(list);
+        const auto solved = solve_calibration(method, data, {});
+        ASSERT_TRUE(solved) << solved.error().sentence();
+        EXPECT_TRUE(serves(solved->verdict()))
+            << "seed " << seed << ": " << solved->report.judgement.reason.english();
+    }
 }
 
 TEST_F(Session, UndoBringsBackWhatWasRemoved) {

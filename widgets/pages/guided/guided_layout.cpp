@@ -25,7 +25,11 @@ QWidget* holder(QVBoxLayout& box, QVBoxLayout*& inside) {
 
 }  // namespace
 
-void GuidedPage::make_head(QVBoxLayout& box) {
+void GuidedPage::make_head() {
+    head_ = new QWidget(this);
+    auto* head = new QVBoxLayout(head_);
+    head->setContentsMargins(0, 0, 0, 0);
+    head->setSpacing(6);
     undo_ = make_button("calibration_undo", "undo", {}, tr("Undo the last change of this calibration"),
                         [this] { calibration_.undo_stack().undo(); });
     redo_ =
@@ -41,20 +45,18 @@ void GuidedPage::make_head(QVBoxLayout& box) {
                              needs_shown_ = !prepare_->isVisible();
                              prepare_->setVisible(needs_shown_);
                          });
-    box.addLayout(make_row({back, needs_, undo_, redo_}));
+    head->addLayout(make_row({back, needs_, undo_, redo_}));
     title_ = make_heading({});
     title_->setObjectName("guided_title");
-    box.addWidget(title_);
-    who_ = make_text({});
-    box.addWidget(who_);
+    head->addWidget(title_);
     stage_ = make_text({});
     stage_->setObjectName("calibration_stage");
     stage_->setTextFormat(Qt::RichText);
-    box.addWidget(stage_);
+    head->addWidget(stage_);
     said_ = make_text({});
     said_->setObjectName("calibration_said");
     said_->hide();
-    box.addWidget(said_);
+    head->addWidget(said_);
     progress_ = new QProgressBar;
     progress_->setObjectName("calibration_progress");
     progress_->setAccessibleName(tr("Progress"));
@@ -66,14 +68,20 @@ void GuidedPage::make_head(QVBoxLayout& box) {
                               series_.stop();
                               calibration_.cancel();
                           });
+    lead_ = make_button("calibration_lead", "next", {}, {}, [this] { lead(); });
+    lead_->setProperty("next", true);
     auto* row = new QHBoxLayout;
+    row->addWidget(lead_);
     row->addWidget(progress_, 1);
     row->addWidget(cancel_);
-    box.addLayout(row);
+    head->addLayout(row);
+    head_->hide();
 }
 
 void GuidedPage::make_prepare(QVBoxLayout& box) {
     QVBoxLayout* inside = nullptr;
+    who_ = make_text({});
+    box.addWidget(who_);
     prepare_ = holder(box, inside);
     auto* row = new QHBoxLayout;
     drawing_ = new MethodDrawing;
@@ -199,6 +207,27 @@ void GuidedPage::make_verdict(QVBoxLayout& box) {
     reason_->setObjectName("calibration_reason");
     inside->addWidget(verdict_);
     inside->addWidget(reason_);
+    QVBoxLayout* robot = nullptr;
+    robot_holder_ = holder(*inside, robot);
+    robot->addWidget(
+        make_text(tr("The robot's repeatability, one standard deviation of an arrival in each "
+                     "axis: about a third of the RP of its data sheet. 0: not stated.")));
+    const auto editor = [&](const char* name, const QString& label, const char* unit, double most,
+                            int decimals) {
+        ParameterInfo info;
+        info.name = name;
+        info.unit = unit;
+        info.maximum = most;
+        info.decimals = decimals;
+        auto* e = new ParameterEditor(info);
+        e->setObjectName(QString("calibration_") + name);
+        e->set_name(label);
+        connect(e, &ParameterEditor::committed, this, &GuidedPage::state_repeatability);
+        robot->addWidget(e);
+        return e;
+    };
+    robot_mm_ = editor("robot_mm", tr("Repeatability of its place"), "mm", 10, 3);
+    robot_deg_ = editor("robot_deg", tr("Repeatability of its turn"), "deg", 5, 4);
     solve_ =
         make_button("calibration_solve", "measure", tr("Solve"), tr("Solves with the ticked poses"), [this] {
             said_->hide();
@@ -256,7 +285,7 @@ void GuidedPage::make_use(QVBoxLayout& box) {
                         tr("Puts it into the project without using it"),
                         [this] { done(calibration_.finish(false)); });
     anew_ = make_button("calibration_anew", "new", tr("Begin anew"),
-                        tr("Puts these captures aside, on disk, and begins with none"),
+                        tr("Puts these captures aside, on disk, and begins with none; undo brings them back"),
                         [this] { done(calibration_.begin_anew()); });
     box.addLayout(make_row({use_, keep_}));
     box.addLayout(make_row({anew_}));

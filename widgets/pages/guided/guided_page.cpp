@@ -11,8 +11,10 @@
 #include <QTimer>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "devices/registry.h"
+#include "devices/simulated/cell.h"
 #include "projects/measure/measure.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/pages/parts/form.h"
@@ -30,7 +32,7 @@ GuidedPage::GuidedPage(Desk& desk) : desk_(desk), calibration_(desk), series_(de
     auto* box = new QVBoxLayout(this);
     box->setContentsMargins(0, 0, 0, 0);
     box->setSpacing(8);
-    make_head(*box);
+    make_head();
     make_prepare(*box);
     make_capture(*box);
     make_list(*box);
@@ -50,10 +52,14 @@ GuidedPage::GuidedPage(Desk& desk) : desk_(desk), calibration_(desk), series_(de
         progress_->setValue(done);
     });
     connect(&calibration_, &CalibrationDesk::refused, this, [this](const QString& sentence) {
-        set_verdict(*said_, sentence, Tone::attention);
-        said_->show();
+        say(first_in_doubt() ? sentence + "\n" +
+                                   tr("Nothing is seen where the second pose should be: the first capture "
+                                      "was probably not "
+                                      "the target. Remove it, or correct the mounting from the drawing.")
+                             : sentence);
     });
     connect(&desk_, &Desk::station_changed, this, [this] {
+        if (!desk_.station().connected) target_set_ = false;  // a cell begins with its part
         if (isVisible() && calibration_.is_open()) {
             refresh_base();  // which sensors are there
             refresh_next();
@@ -71,9 +77,22 @@ GuidedPage::GuidedPage(Desk& desk) : desk_(desk), calibration_(desk), series_(de
 
 bool GuidedPage::done(const Expected<void>& result) {
     if (result) return true;
-    set_verdict(*said_, shown_error(result.error()), Tone::attention);
-    said_->show();
+    say(shown_error(result.error()));
     return false;
+}
+
+void GuidedPage::say(const QString& sentence) {
+    set_verdict(*said_, sentence, Tone::attention);
+    said_->show();
+}
+
+// The other poses follow from the first one: where nothing is seen at the second, it led there.
+bool GuidedPage::first_in_doubt() const {
+    if (!calibration_.is_open() || calibration_.session().state().captures.size() != 1) return false;
+    constexpr double kThere_mm = 1;
+    const auto at = flange();
+    const auto next = next_pose(calibration_.session(), calibration_.mounting());
+    return at && next && distance_mm(*at, next->base_from_flange) < kThere_mm;
 }
 
 bool GuidedPage::begin(const MethodId& method, const SensorId& sensor, const RobotId& robot) {
@@ -94,8 +113,8 @@ bool GuidedPage::begin(const MethodId& method, const SensorId& sensor, const Rob
 
 void GuidedPage::leave() {
     series_.stop();
-    // A simulated cell gets its part back.
-    if (target_set_) desk_.worker().set_sensor_parameter(calibration_.session().sensor_id(), "scene", 0);
+    if (target_set_) show_target(false);
+    target_set_ = false;
     calibration_.set_looking(false);
     calibration_.close();
     propose(std::nullopt);
@@ -111,7 +130,9 @@ void GuidedPage::propose(const std::optional<Pose>& base_from_flange) {
 
 void GuidedPage::showEvent(QShowEvent* event) {
     QWidget::showEvent(event);
+    head_->show();
     if (calibration_.is_open()) {
+        if (target_set_) show_target(true);
         refresh();
         calibration_.set_looking(true);
     }
@@ -119,10 +140,14 @@ void GuidedPage::showEvent(QShowEvent* event) {
 
 void GuidedPage::hideEvent(QHideEvent* event) {
     QWidget::hideEvent(event);
+    head_->hide();
     series_.stop();
+    // Whoever measures on another step measures the part.
+    if (calibration_.is_open() && target_set_) show_target(false);
     calibration_.set_looking(false);
     calibration_.set_automatic(false);
     propose(std::nullopt);
+    if (!std::exchange(under_way_, {}).isEmpty()) emit under_way(under_way_);
 }
 
 bool GuidedPage::simulated_sensor() const {
@@ -137,19 +162,25 @@ std::optional<Pose> GuidedPage::flange() const {
 }
 
 void GuidedPage::set_target() {
+    show_target(true);
+    refresh_who();
+    mark_next();
+}
+
+void GuidedPage::show_target(bool target) {
     const SensorSetup* sensor = find_sensor(desk_.project(), calibration_.session().sensor_id());
     const auto start =
         sensor ? simulated_start(calibration_.session().method(), sensor->settings) : std::nullopt;
     if (!start) return;
+    const std::string scene(target ? std::string_view(start->scene) : to_string(Scene::part));
     for (const SensorState& s : desk_.station().sensors)
         if (s.id == sensor->id)
             for (const ParameterInfo& p : s.parameters)
                 if (p.name == "scene") {
-                    const auto at = std::find(p.choices.begin(), p.choices.end(), start->scene);
+                    const auto at = std::find(p.choices.begin(), p.choices.end(), scene);
                     desk_.worker().set_sensor_parameter(sensor->id, "scene",
                                                         static_cast<double>(at - p.choices.begin()));
-                    target_set_ = true;
-                    mark_next();
+                    target_set_ = target_set_ || target;
                 }
 }
 

@@ -16,6 +16,7 @@
 #include "widgets/calibrate/target_view.h"
 #include "widgets/desk/calibration_desk.h"
 #include "widgets/desk/calibration_series.h"
+#include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
 
 namespace seamwright {
@@ -26,19 +27,24 @@ class GuidedPage : public QWidget {
     explicit GuidedPage(Desk& desk);
 
     CalibrationDesk& calibration() { return calibration_; }
+    // What must stay in sight while the page scrolls: the stage, what was refused, progress and Cancel, and the one key
+    // that leads on. Whoever shows the page places it above; it shows and hides with the page.
+    QWidget* head() const { return head_; }
     bool begin(const MethodId& method, const SensorId& sensor, const RobotId& robot);
 
   signals:
     void left();  // back to the overview
     // Where the robot is to go next; nullopt: nowhere, or no calibration is shown.
     void proposed(std::optional<seamwright::Pose> base_from_flange);
+    // What is being calibrated and how far it is, while the page is shown and something is left to do in it; else empty.
+    void under_way(const QString& words);
 
   protected:
     void showEvent(QShowEvent* event) override;
     void hideEvent(QHideEvent* event) override;
 
   private:
-    void make_head(QVBoxLayout& box);
+    void make_head();
     void make_prepare(QVBoxLayout& box);
     void make_capture(QVBoxLayout& box);
     void make_list(QVBoxLayout& box);
@@ -46,6 +52,7 @@ class GuidedPage : public QWidget {
     void make_use(QVBoxLayout& box);
 
     void refresh();
+    void refresh_who();
     void refresh_stage();
     void refresh_settings();
     void refresh_base();
@@ -66,6 +73,12 @@ class GuidedPage : public QWidget {
     void go_there();
     void leave();
     void mark_next();  // the one key of this page that leads on
+    void lead();       // presses it
+    void keep_focus(bool busy);
+    void say(const QString& sentence);
+    bool first_in_doubt() const;
+    void show_target(bool target);  // before the simulated sensor, or its part again
+    void state_repeatability();
     void propose(const std::optional<Pose>& base_from_flange);
     bool simulated_sensor() const;
     bool stored() const;
@@ -75,7 +88,11 @@ class GuidedPage : public QWidget {
     Desk& desk_;
     CalibrationDesk calibration_;
     CalibrationSeries series_;
+    QWidget* head_;
     QLabel *title_, *who_, *stage_, *why_, *need_, *base_, *said_;
+    QPushButton *lead_, *leads_to_ = nullptr;  // in the head, and the key of the page that it presses
+    QWidget* robot_holder_;
+    ParameterEditor *robot_mm_, *robot_deg_;
     MethodDrawing* drawing_;
     PoseEditor* nominal_;
     QWidget *prepare_, *settings_holder_, *nominal_holder_, *capture_box_, *solve_box_, *verify_box_;
@@ -93,7 +110,8 @@ class GuidedPage : public QWidget {
     std::string shown_method_;
     std::map<std::shared_ptr<const CalibrationCapture>, std::pair<EntryPicture, QIcon>> pictures_;
     std::optional<Pose> proposed_;
-    bool needs_shown_ = true, target_set_ = false;
+    bool needs_shown_ = true, target_set_ = false, focus_waits_ = false;
+    QString under_way_;
 };
 
 }  // namespace seamwright

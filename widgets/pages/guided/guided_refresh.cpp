@@ -73,9 +73,6 @@ void GuidedPage::refresh() {
     if (shown_method_ != s.method().id + "/" + s.sensor_id()) {
         shown_method_ = s.method().id + "/" + s.sensor_id();
         title_->setText(shown(s.method().title));
-        who_->setText(s.method().robot
-                          ? tr("Sensor %1 on robot %2").arg(text(s.sensor_id()), text(s.robot_id()))
-                          : tr("Sensor %1").arg(text(s.sensor_id())));
         why_->setText(shown(s.method().why));
         QStringList need;
         for (const Text& one : s.method().need) need << shown(one);
@@ -88,6 +85,7 @@ void GuidedPage::refresh() {
     const bool live = s.method().capture != CaptureKind::files;
     capture_box_->setVisible(live);
     load_folder_->setVisible(reads_images(s.method()));
+    refresh_who();
     refresh_stage();
     refresh_settings();
     refresh_table();
@@ -96,6 +94,14 @@ void GuidedPage::refresh() {
     refresh_verdict();
     refresh_use();
     refresh_busy();
+}
+
+void GuidedPage::refresh_who() {
+    const CalibrationSession& s = calibration_.session();
+    QString who = s.method().robot ? tr("Sensor %1 on robot %2").arg(text(s.sensor_id()), text(s.robot_id()))
+                                   : tr("Sensor %1").arg(text(s.sensor_id()));
+    if (target_set_) who = tr("%1. It sees the simulated target until this page is left.").arg(who);
+    who_->setText(who);
 }
 
 void GuidedPage::refresh_stage() {
@@ -277,6 +283,9 @@ void GuidedPage::refresh_next() {
                          [](const SessionCapture& c) { return c.taken->base_from_flange.has_value(); })
                 ? tr("Jog the sensor until the target is outlined, then capture. The next poses follow from "
                      "the first one.")
+            : s.solution() && !serves(s.solution()->verdict())
+                ? tr("Every view has been taken and the solution does not serve yet: state the robot's "
+                     "repeatability, leave out what stands out, or jog to other places and capture there.")
                 : tr("No further pose is proposed: every view has been taken."));
         next_words_->hide();
         return;
@@ -336,6 +345,15 @@ void GuidedPage::refresh_verdict() {
     const CalibrationSession& s = calibration_.session();
     const CalibrationSolution* solution = s.solution();
     solve_box_->setVisible(!s.state().captures.empty());
+    robot_holder_->setVisible(s.method().repeatability && solution);
+    const json robot = s.state().settings.value("robot", json::object());
+    const auto stated = [&](const char* key) {
+        const auto it = robot.find(key);
+        return it != robot.end() && it->is_number() ? it->get<double>() : 0.0;
+    };
+    if (!robot_mm_->refused()) robot_mm_->set_value(stated("sigma_mm"));
+    if (!robot_deg_->refused()) robot_deg_->set_value(stated("sigma_deg"));
+    robot_deg_->setEnabled(stated("sigma_mm") > 0);
     parameters_->setVisible(solution && !solution->report.parameters.empty());
     if (!solution) {
         set_verdict(
@@ -395,6 +413,13 @@ void GuidedPage::refresh_use() {
                 *verified_,
                 tr("Not verified: take one more pose that is not solved with, or keep one of the list back."),
                 Tone::attention);
+        else if (v.confirmed && !serves(solution->verdict()))
+            // As wide as such a solution is, nearly every pose agrees with it.
+            set_verdict(*verified_,
+                        tr("%n pose(s) agree, but the solution is %1: %2", "", v.poses)
+                            .arg(verdict_word(solution->verdict()),
+                                 parts.isEmpty() ? tr("no residual") : parts.join(", ")),
+                        Tone::plain);
         else
             set_verdict(*verified_,
                         (v.confirmed ? tr("confirmed by %n pose(s): %1", "", v.poses)
@@ -442,79 +467,6 @@ void GuidedPage::refresh_use() {
     stands_->setVisible(chains && !used);
     compared_->setText(against.join("\n"));
     compared_->setVisible(!against.isEmpty());
-}
-
-void GuidedPage::refresh_busy() {
-    if (!calibration_.is_open()) return;
-    const CalibrationSession& s = calibration_.session();
-    const bool running = series_.running(), busy = calibration_.busy() || running;
-    progress_->setVisible(busy);
-    cancel_->setVisible(busy);
-    if (running) {
-        const int taken = static_cast<int>(s.state().captures.size());
-        progress_->setRange(0, series_.wanted());
-        progress_->setValue(std::min(taken, series_.wanted()));
-        progress_->setFormat(tr("Capture %1 of %2").arg(taken + 1).arg(series_.wanted()));
-    } else if (busy && progress_->format() != calibration_.doing()) {
-        progress_->setRange(0, 0);
-        progress_->setFormat(calibration_.doing());
-    }
-    if (!busy) progress_->setFormat({});
-    const bool connected = desk_.station().connected;
-    for (QPushButton* b : {capture_, verify_}) b->setEnabled(!busy && connected);
-    capture_all_->setEnabled(!busy && connected);
-    for (QPushButton* b : {automatic_, set_target_, go_there_}) b->setEnabled(connected && !running);
-    for (QPushButton* b : {load_, load_folder_}) b->setEnabled(!busy);
-    solve_->setEnabled(!busy && s.solving_captures() >= s.method().fewest);
-    const bool chosen = !selected().empty();
-    verification_->setEnabled(chosen);
-    remove_->setEnabled(chosen);
-    for (const SessionCapture& c : s.state().captures)
-        if (c.taken->id == selected())
-            verification_->setText(c.verification ? tr("Solve with it") : tr("Keep for verification"));
-    const bool ready =
-        !busy && (s.stage() == SessionStage::use || (s.stage() == SessionStage::used && !stored()));
-    use_->setEnabled(ready);
-    keep_->setEnabled(ready);
-    mark_next();
-}
-
-void GuidedPage::mark_next() {
-    const CalibrationSession& s = calibration_.session();
-    const bool live = s.method().capture != CaptureKind::files && desk_.station().connected;
-    // A simulated target is set up before anything can be captured; where the desk moves the robot, all captures are one
-    // deed.
-    const auto take = [&](QPushButton* capture) {
-        if (!live) return load_;
-        if (s.method().capture == CaptureKind::touch) return capture;
-        if (simulated_sensor() && !target_set_) return set_target_;
-        return capture_all_->isVisibleTo(this) ? capture_all_ : capture;
-    };
-    QPushButton* next = nullptr;
-    switch (s.stage()) {
-        case SessionStage::prepare:
-        case SessionStage::capture:
-            next = take(capture_);
-            break;
-        case SessionStage::solve:
-            next = solve_;
-            break;
-        case SessionStage::verify:
-            next = live ? take(verify_) : verification_;
-            break;
-        case SessionStage::use:
-            next = s.method().use == AnswerUse::sensor ? use_ : keep_;
-            break;
-        case SessionStage::used:
-            break;
-    }
-    for (QPushButton* b :
-         {capture_, capture_all_, load_, set_target_, solve_, verify_, verification_, use_, keep_}) {
-        if (b->property("next").toBool() == (b == next)) continue;
-        b->setProperty("next", b == next);
-        b->style()->unpolish(b);
-        b->style()->polish(b);
-    }
 }
 
 void GuidedPage::refresh_live() {

@@ -179,7 +179,7 @@ TEST(CameraCalibration, APlateThatIsNotAsStatedServesWithinItsSigmasOrNotAtAll) 
 // Sound plates, corners that err alike too: blur of a view, light from one side, a lens beyond the model's terms.
 TEST(CameraCalibration, ASoundPlateIsNotDoubtedForItsCorners) {
     int doubted = 0, asked = 0;
-    for (unsigned seed = 1; seed <= 12; ++seed)
+    for (unsigned seed = 1; seed <= 5; ++seed)
         for (int kind = 0; kind < 4; ++kind)
             for (const int views : {6, 14}) {
                 plain::Dice dice(500 + seed);
@@ -203,7 +203,6 @@ TEST(CameraCalibration, ASoundPlateIsNotDoubtedForItsCorners) {
                 const bool said =
                     r->report.judgement.reason.english().find("not as stated") != std::string::npos;
                 doubted += said;
-                if (said) std::printf("doubted: kind %d, %d views, seed %u\n", kind, views, seed);
             }
     EXPECT_LE(doubted, asked / 30);
 }

@@ -95,6 +95,7 @@ TEST_F(GuidedLead, ASolutionThatDoesNotServeGetsMorePoses) {
     EXPECT_EQ(captures(me), advised) << "none is kept back from a solution that does not serve";
     EXPECT_EQ(me.text_of("calibration_verdict"), "poor");
     EXPECT_EQ(lead->text(), "4 more pose(s)") << "one of them to keep back";
+    EXPECT_TRUE(me.text_of("calibration_stage").contains("<b>poor</b>")) << "why, in sight beside it";
     me.picture("guided_lead_poor");
     me.click("calibration_lead");
     ASSERT_TRUE(ended(me)) << window_text(me);

@@ -12,7 +12,7 @@
 namespace seamwright {
 namespace {
 
-constexpr int kTableHeight = 250, kParametersHeight = 190, kNameWidth = 156;
+constexpr int kTableHeight = 250, kParametersHeight = 190, kNameWidth = 130;
 
 QWidget* holder(QVBoxLayout& box, QVBoxLayout*& inside) {
     auto* widget = new QWidget;

@@ -114,7 +114,12 @@ void GuidedPage::refresh_stage() {
         words << (i == at ? "<b><span style=\"color:" + style::selection(palette()).name() + "\">" +
                                 names[i] + "</span></b>"
                           : names[i]);
-    stage_->setText(words.join(QStringLiteral("  ›  ")));
+    QString line = words.join(QStringLiteral("  ›  "));
+    // Why it goes on capturing, where the page is scrolled elsewhere.
+    if (const CalibrationSolution* solution = s.solution(); solution && !serves(solution->verdict()))
+        line += "<br>" + tr("%1: %2").arg("<b>" + verdict_word(solution->verdict()).toHtmlEscaped() + "</b>",
+                                          shown(solution->report.judgement.reason).toHtmlEscaped());
+    stage_->setText(line);
     stage_->setAccessibleDescription(names[at]);
     stage_->setProperty("stage", at);
 }

@@ -56,11 +56,12 @@ struct LensResult {
     CalibrationReport report;    // centre_u, centre_v (px), k1, k2 (scaled radius), k3, p1, p2
 };
 
-// Error: no size, lines with fewer than 5 points, NaN, points outside the image. Verdict undetermined: fewer
-// than 3 lines, no lens that makes them straight, or the distortion in a corner known to worse than 3 px. poor: lines stay
-// bent by 2 px, or by three times what their points scatter (line_noise.h) and 0.1 px; usable where k3, p1 and p2 would
-// take that away, or from 1.3 times on (and more than chance), where the covariance counts a third of a line as one point (poor if the centre strays as well: bent lines draw it).
-// What was left out stands in the notes of report.poses and in the judgement.
+// Error: no size, lines with fewer than 5 points, NaN, points outside the image. Verdict undetermined: fewer than 3
+// lines, no lens that makes them straight, or the distortion in a corner known to worse than 3 px. poor: lines stay
+// bent by 2 px, or by three times what their points scatter (line_noise.h) and 0.1 px; usable where k3, p1 and p2
+// would take that away, or from 1.3 times on (and more than chance), where the covariance counts a third of a line as
+// one point (poor if the centre strays as well: bent lines draw it). What was left out stands in the notes of
+// report.poses and in the judgement.
 Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& options);
 
 }  // namespace seamwright

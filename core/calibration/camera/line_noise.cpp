@@ -1,4 +1,5 @@
 #include "core/calibration/camera/line_noise.h"
+#include "core/acceptance/distributions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +46,7 @@ double LineNoise::form_factor(double rms_px, double points, int lines) const {
     constexpr double kParts = 3;
     const double noise2 = sigma_px() * sigma_px(), all2 = rms_px * rms_px;
     if (!(noise2 > 0) || !(all2 > kStraightTimes * kStraightTimes * noise2) ||
-        !(f_chance(all2 / noise2, points, freedom()) < kNoAccident))
+        !(f_upper(points, freedom(), all2 / noise2) < kNoAccident))
         return 1;
     const double alike = std::max(1.0, points / (kParts * lines));
     return (noise2 + (all2 - noise2) * alike) / all2;

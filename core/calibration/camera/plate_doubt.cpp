@@ -1,4 +1,5 @@
 #include "core/calibration/camera/plate_doubt.h"
+#include "core/acceptance/distributions.h"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -109,7 +110,7 @@ PlateDoubt doubt_of_plate(const CameraData& data, const std::vector<std::vector<
     const double gain = solution.cost - fit.corner_cost, numbers = static_cast<double>(kShapeNumbers);
     double own_freedom = 0;
     const double own = own_shapes_px2(data, used, fit.state, own_freedom), noise = fit.corner_cost / left;
-    const double chance = own > noise ? f_chance(gain / numbers / own, numbers, own_freedom)
+    const double chance = own > noise ? f_upper(numbers, own_freedom, gain / numbers / own)
                                       : freed_chance(solution.cost, fit.corner_cost, numbers, left);
     doubt.tells =
         chance < kNoAccident && gain > kRounding_px * kRounding_px * static_cast<double>(solution.points);

@@ -34,11 +34,11 @@ struct LaserPlaneResult {
     CalibrationReport report;  // x, y, z (mm), rx, ry, rz (deg)
 };
 
-// At least 4 pairs (10 and more advised). A pair that the others contradict is named and left out (from 6
-// pairs on). Error: fewer than 4 pairs, NaN, unknown or double ids. Verdict undetermined: points on one line,
-// sigma beyond 5 mm or 2 degrees. poor: pixels and points miss one another by more than 1.5 px, they fit better as [v, u],
-// or another camera takes 0.3 px of their residuals away; from 0.5 and 0.1 px on at most usable. place_sigma_mm: of laser_mm along each axis, independent from pair to pair (a stage's
-// or a robot's arrivals); 0: not stated.
+// At least 4 pairs (10 and more advised). A pair that the others contradict is named and left out (from 6 pairs on).
+// Error: fewer than 4 pairs, NaN, unknown or double ids. Verdict undetermined: points on one line, sigma beyond 5 mm
+// or 2 degrees. poor: pixels and points miss one another by more than 1.5 px, they fit better as [v, u], or another
+// camera takes 0.3 px of their residuals away; from 0.5 and 0.1 px on at most usable. place_sigma_mm: of laser_mm
+// along each axis, independent from pair to pair (a stage's or a robot's arrivals); 0: not stated.
 Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
                                                  const std::vector<LaserPair>& pairs,
                                                  const std::vector<std::string>& exclude,

@@ -1,4 +1,5 @@
 #include "core/calibration/stripe/laser_plane_camera.h"
+#include "core/acceptance/distributions.h"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -92,7 +93,7 @@ std::optional<double> fits_swapped(const CameraModel& camera, const CameraPoints
     const double squares = n * solved->rms_px * solved->rms_px, freedom = 2 * n - 6;
     if (!(freedom > 0) || !(squares < squares_px2)) return std::nullopt;
     if (squares > 0 && std::isfinite(squares_px2) &&
-        !(f_chance(squares_px2 / squares, freedom, freedom) < kNoAccident))
+        !(f_upper(freedom, freedom, squares_px2 / squares) < kNoAccident))
         return std::nullopt;
     return solved->rms_px;
 }

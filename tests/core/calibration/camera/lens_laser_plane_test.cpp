@@ -332,12 +332,15 @@ PlainPairs plain_pairs(unsigned seed, int count, double pixel_px, double place_m
 
 // The formulas of the textbook: 10 % of the F of (4, 20) are beyond 2.249, 0.1 % beyond 7.096; odd ones from tables too.
 TEST(FTest, IsTheTables) {
-    EXPECT_NEAR(f_chance(2.2489, 4, 20), 0.1, 1e-5);
-    EXPECT_NEAR(f_chance(7.0960, 4, 20), 0.001, 1e-6);
-    EXPECT_NEAR(f_chance(161.4476, 1, 1), 0.05, 1e-6);
-    EXPECT_NEAR(f_chance(2.7109, 5, 20), 0.05, 1e-5);
-    EXPECT_NEAR(f_chance(20.515 / 5, 5, 1e7), 0.001, 1e-6) << "chi squared";
+    const auto of = [](double f, double freed, double freedom) {
+        return freed_chance(3 * (1 + f * freed / freedom), 3, freed, freedom);
+    };
+    EXPECT_NEAR(of(2.2489, 4, 20), 0.1, 1e-5);
+    EXPECT_NEAR(of(7.0960, 4, 20), 0.001, 1e-6);
+    EXPECT_NEAR(of(161.4476, 1, 1), 0.05, 1e-6);
     EXPECT_EQ(freed_chance(4, 4, 3, 10), 1);
+    EXPECT_EQ(freed_chance(4, 0, 3, 10), 0) << "nothing is left";
+    EXPECT_EQ(freed_chance(4, 1, 3, 0), 1) << "nothing can be told";
 }
 
 TEST(LaserPlane, AForgottenDistortionIsNamed) {

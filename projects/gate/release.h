@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/text.h"
-#include "projects/gate/safety_gate.h"
+#include "projects/gate/push.h"
 
 namespace seamwright {
 

@@ -2,7 +2,7 @@
 // What stands between a number and a robot.
 //
 // pass_gate() is a pure function on values: the same request has the same answer in the plant, in a replay
-// and in a test. Only it can make a GatePass, and only push_region() writes to a robot and wants one, so
+// and in a test. Only it can make a GatePass, and only push_region() (push.h) writes to a robot and wants one, so
 // nothing reaches a controller that was not judged. A pass holds the frame to write, computed by the gate
 // itself from the taught frame and the displacement, and is good for one push.
 //
@@ -14,7 +14,6 @@
 // spot moves farther than a shift and a turn within them move it about a point of the part (the limit in mm, and that in
 // degrees over the largest distance of two spots), wherever the work object's origin lies.
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -119,34 +118,5 @@ struct GateVerdict {
     std::vector<Text> reasons;  // every reason, not the first; empty exactly when there is a pass
 };
 GateVerdict pass_gate(const GateRequest& request);
-
-// What a controller may change in the last digits of a frame between writing and reading.
-inline constexpr double kReadBackToleranceMm = 1e-3;
-inline constexpr double kReadBackToleranceDeg = 1e-4;
-
-// Records an event durably; an Error means that it is not recorded.
-using EventSink = std::function<Expected<void>(EventKind kind, const std::string& subject, const Text& text)>;
-
-// Reads the old frame, records the attempt, writes, reads back and compares, and records that. If anything
-// after the first byte sent goes wrong, the record included, that is an alarm: the old frame is written again
-// and read back. Nothing is sent when the old frame cannot be read or is not the one that was judged, or when
-// the attempt cannot be recorded.
-PushRecord push_region(GatePass&& pass, RobotLink& robot, const EventSink& record);
-
-// Does the frame that a push has written (precondition) still stand on the controller? `differs` in one sentence; `unread`:
-// the controller does not say.
-enum class FrameStands { yes, differs, unread };
-struct FrameLook {
-    FrameStands stands = FrameStands::unread;
-    Text text;
-};
-FrameLook look_at_frame(const PushRecord& push, RobotLink& robot);
-
-// Takes back a push that was written (precondition): a part is corrected with all its regions or with none.
-// The old frame is written and read back, an event recorded (an alarm where that fails), `push` brought up to
-// date. The permission to run must have been taken back before: a frame under a running application would
-// make it jump.
-void withdraw_push(PushRecord& push, RobotLink& robot, const EventSink& record,
-                   EventKind kind = EventKind::alarm);
 
 }  // namespace seamwright

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "projects/gate/push.h"
 #include "projects/gate/safety_gate.h"
 #include "projects/panel/panel_measure.h"
 #include "projects/panel/panel_station.h"

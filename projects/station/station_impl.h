@@ -11,6 +11,7 @@
 
 #include "projects/drift/drift_keeper.h"
 #include "projects/file/file_use.h"
+#include "projects/gate/push.h"
 #include "projects/gate/safety_gate.h"
 #include "projects/measure/measure.h"
 #include "projects/station/acquire.h"

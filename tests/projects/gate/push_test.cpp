@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "projects/gate/push.h"
 #include "tests/projects/gate/gate_request.h"
 #include "tests/projects/mock_devices.h"
 

@@ -261,6 +261,8 @@ double chi_squared_of(const std::vector<DriftMeasurement>& measurements, const P
 struct Explained {
     Fit fit;
     double before = 0, after = 0;  // chi squared without and with the change
+    double stated = 0,
+           stated_limit = 0;  // of no change, by the S_i as they are; and what chance leaves at most
     double freedom = 0;
     double scatter_mm = 0;
     bool contradicts = false;  // the S_i, more than by chance
@@ -281,7 +283,10 @@ Explained explain(const std::vector<DriftMeasurement>& measurements, const Store
         return e;
     };
     Explained found = with(0);
-    found.significant = found.before > chi_squared_quantile(kChanged, std::max(1, rows));
+    const double stated = found.before, limit = chi_squared_quantile(kChanged, std::max(1, rows));
+    found.stated = stated;
+    found.stated_limit = limit;
+    found.significant = stated > limit;
     if (found.freedom < 1 || found.after <= found.freedom) return found;
     const bool contradicts = contradicts_stated(found.after, found.freedom);
     // As much as makes chi squared what is expected.
@@ -291,6 +296,8 @@ Explained explain(const std::vector<DriftMeasurement>& measurements, const Store
         found = with(middle);
         (found.after > found.freedom ? low : high) = middle;
     }
+    found.stated = stated;
+    found.stated_limit = limit;
     found.contradicts = contradicts;
     const double widened = student_quantile(kUpper95, found.freedom) / kNormal95;
     found.fit.covariance *= widened * widened;
@@ -310,8 +317,8 @@ Expected<DriftResult> check_drift(const std::vector<DriftMeasurement>& measureme
     const Explained found = explain(measurements, stored, kCoarsest * limits.translation_mm);
     const Fit& fit = found.fit;
     DriftResult result;
-    result.chi_squared = found.before;
-    result.chi_squared_limit = chi_squared_quantile(kChanged, 3 * static_cast<double>(measurements.size()));
+    result.chi_squared = found.stated;
+    result.chi_squared_limit = found.stated_limit;
     result.change = fit.change;
     result.not_determined = fit.not_determined;
     result.change_deg = deg_from_rad(rotation_log(fit.change.linear()).norm());

@@ -76,7 +76,7 @@ struct DriftResult {
     double change_mm = 0;                           // largest shift of a measured place by `change`
     double change_deg = 0;                          // angle of `change`
     double sigma_mm = 0, sigma_deg = 0;             // of the two
-    double chi_squared = 0, chi_squared_limit = 0;  // of "nothing has changed"
+    double chi_squared = 0, chi_squared_limit = 0;  // of "nothing has changed", by the S_i as they are given
     double rms_before_mm = 0, rms_after_mm = 0;     // of e_i, with and without the change
     std::vector<Text> not_determined;               // "turn about Z of the flange"
     CalibrationReport report;                       // poses: per-measurement |e_i|; judgement

@@ -124,9 +124,9 @@ Eigen::Vector3d in_taught_sensor(const Eigen::Vector2d& point_mm, const Pose& fl
     return base_from_sensor.inverse() * (*base_from_flange_reported * flange_from_sensor * m);
 }
 
-// Does what a spot's sensor sends hold every line of its field? The stripe in an image has a place for each; a sensor that lists one
-// line without return lists all of them. A file may have dropped those without return: its profile is then shorter than what was
-// taught.
+// Does what a spot's sensor sends hold every line of its field? The stripe in an image has a place for each; a sensor
+// that lists one line without return lists all of them. A file may have dropped those without return: its profile is
+// then shorter than what was taught.
 struct ListedLines {
     bool images = false;     // what an image's stripe tells
     std::size_t taught = 0;  // lines of a profile that lists all of them; 0: none is known to

@@ -17,4 +17,8 @@ std::optional<Feature> feature_at_reference(const Spot& spot);
 // The points of the reference profile that the feature rests on (Feature::points_used); 0 where it finds none.
 int points_at_reference(const Spot& spot);
 
+// How far the reference lies beside the point that the spot's feature has in the profile kept with it, along the axes that
+// count; 0 within what robot and feature scatter, and where the profile does not show the feature.
+double reference_beside_mm(const Project& project, const Spot& spot);
+
 }  // namespace seamwright

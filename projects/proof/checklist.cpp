@@ -414,23 +414,6 @@ bool widened_tolerance(const Project& project, double tolerance_mm) {
     return !(tolerance_mm <= project.requirements.sigma3_mm * kSlackOfTyped);
 }
 
-double reference_beside_mm(const Project& project, const Spot& spot) {
-    // Between the mean of the arrivals and one of them lies what an ordinary robot repeats (0.1 mm, thesis 5.1), five
-    // times, or what this one was measured to, and the feature's own noise.
-    constexpr double kRepeatsMm = 0.6, kSigmas = 6;
-    const auto found = feature_at_reference(spot);
-    if (!found) return 0;
-    const Eigen::Vector2d beside(spot.weights.x() == 0 ? 0 : spot.reference_mm.x() - found->point_mm.x(),
-                                 spot.weights.z() == 0 ? 0 : spot.reference_mm.z() - found->point_mm.y());
-    double repeats = std::max(kRepeatsMm, kSigmas * spot.sigma_mm);
-    if (const RobotSetup* robot = find_robot(project, spot.robot_id))
-        repeats =
-            std::max(repeats, kSigmas * std::sqrt(robot->arrival_covariance.topLeftCorner<3, 3>().trace()));
-    const Eigen::Matrix2d reach =
-        kSigmas * kSigmas * found->covariance_mm2 + repeats * repeats * Eigen::Matrix2d::Identity();
-    return beside.dot(reach.ldlt().solve(beside)) > 1 ? beside.norm() : 0;
-}
-
 std::optional<double> days_between(const std::string& from_utc, const std::string& to_utc) {
     const auto from = utc_seconds(from_utc), to = utc_seconds(to_utc);
     if (!from || !to) return std::nullopt;

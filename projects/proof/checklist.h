@@ -82,9 +82,6 @@ std::optional<CheckItem> taught_open(const Project& project, const Spot& spot);
 std::optional<CheckItem> frozen_open(const Project& project, const Facts& facts, const Spot& spot);
 // Whether a pass judged by it says less than the project requires.
 bool widened_tolerance(const Project& project, double tolerance_mm);
-// How far the reference lies beside the point that the spot's feature has in the profile kept with it, along the axes that
-// count; 0 within what robot and feature scatter, and where the profile does not show the feature.
-double reference_beside_mm(const Project& project, const Spot& spot);
 
 // The newest evidence of a kind; of a spot for FrozenContour. nullptr when there is none.
 template <class T>

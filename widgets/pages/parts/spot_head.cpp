@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "projects/measure/measure.h"
+#include "projects/measure/reference_feature.h"
 #include "projects/proof/checklist.h"
 #include "widgets/pages/parts/form.h"
 #include "widgets/style.h"

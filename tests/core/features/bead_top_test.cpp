@@ -2,63 +2,25 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
 
-#include "contour_scenes.h"
-#include "core/features/kinds/feature_registry.h"
-#include "core/profile/filter.h"
+#include "round_shapes.h"
 
 namespace seamwright::scenes {
 namespace {
-
-struct Bead {
-    double radius, noise;
-    int points;  // on 60 mm
-};
-constexpr double kField = 60;
-
-Scene scene_of(const Bead& kind, Grid grid, const char* name) {
-    Scene s;
-    s.sensor.points = kind.points;
-    s.sensor.pitch = kField / kind.points;
-    s.sensor.noise = kind.noise;
-    s.sensor.grid = grid;
-    s.recipe.kind = name;
-    return s;
-}
-
-struct Tops {
-    int all = 0, found = 0, within = 0;
-    void add(const Scene& s, Dice& dice, int smoothed = 1) {
-        Profile p = s.profile(dice);
-        smooth(p, smoothed);
-        EXPECT_TRUE(filter_profile(p, {}));
-        const Feature f = make_feature_finder(s.recipe).value()->find(p);
-        ++all;
-        if (f.status != FeatureStatus::ok) return;
-        const Vector2d e = f.point_mm - s.truth;
-        ++found;
-        within += e.dot(f.covariance_mm2.ldlt().solve(e)) < 5.991;
-    }
-    void expect(double least_found, double least_within) const {
-        EXPECT_GE(found, least_found * all);
-        EXPECT_GE(within, least_within * found);
-    }
-};
 
 constexpr int kEach = 40;
 class BeadTop : public testing::TestWithParam<Grid> {};
 
 // Of a circle's segment of height 2 mm, asked with nothing but what is meant.
 TEST_P(BeadTop, ABeadsTopIsFoundByItself) {
-    static constexpr Bead kBeads[] = {
+    static constexpr RoundShape kBeads[] = {
         {5, .05, 800}, {5, .03, 640}, {4, .02, 640}, {5, .05, 1280}, {8, .03, 640}};
     for (const int smoothed : {1, 5}) {
-        Tops count;
+        Coverage count;
         Dice dice(45);
-        for (const Bead& kind : kBeads)
+        for (const RoundShape& kind : kBeads)
             for (int i = 0; i < kEach; ++i) {
                 Scene s = scene_of(kind, GetParam(), "extremum");
                 const double half = std::acos((kind.radius - 2) / kind.radius);

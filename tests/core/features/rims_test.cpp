@@ -2,53 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
-#include "contour_scenes.h"
-#include "core/features/kinds/feature_registry.h"
-#include "core/profile/filter.h"
+#include "round_shapes.h"
 
 namespace seamwright::scenes {
 namespace {
 
-struct Arc {
-    double radius, noise;
-    int points;  // on 60 mm
-};
-constexpr double kField = 60;
-
-Scene scene_of(const Arc& kind, Grid grid) {
-    Scene s;
-    s.sensor.points = kind.points;
-    s.sensor.pitch = kField / kind.points;
-    s.sensor.noise = kind.noise;
-    s.sensor.grid = grid;
-    s.recipe.kind = "circle";
-    return s;
-}
-
-struct Centres {
-    int all = 0, found = 0, within = 0;
-    void add(const Scene& s, Dice& dice) {
-        Profile p = s.profile(dice);
-        EXPECT_TRUE(filter_profile(p, {}));
-        const Feature f = make_feature_finder(s.recipe).value()->find(p);
-        ++all;
-        if (f.status != FeatureStatus::ok) return;
-        const Vector2d e = f.point_mm - s.truth;
-        ++found;
-        within += e.dot(f.covariance_mm2.ldlt().solve(e)) < 5.991;
-    }
-    void expect(double least_found, double least_within) const {
-        EXPECT_GE(found, least_found * all);
-        EXPECT_GE(within, least_within * found);
-    }
-};
-
 // A sheet that bends down by `sweep` degrees and ends there, or goes on straight.
-Scene rim(const Arc& kind, Grid grid, double sweep, bool goes_on, Dice& dice) {
-    Scene s = scene_of(kind, grid);
+Scene rim(const RoundShape& kind, Grid grid, double sweep, bool goes_on, Dice& dice) {
+    Scene s = scene_of(kind, grid, "circle");
     Sheet sheet{{-kFar, 0}, {0, 0}};
     roll(sheet, 0, -sweep, kind.radius);
     if (goes_on) go(sheet, -sweep, kFar);
@@ -58,17 +21,17 @@ Scene rim(const Arc& kind, Grid grid, double sweep, bool goes_on, Dice& dice) {
     return s;
 }
 
-constexpr Arc kRims[] = {{3, .03, 640}, {5, .03, 640}, {2, .02, 1280},
-                         {5, .05, 320}, {8, .03, 640}, {3, .01, 2048}};
+constexpr RoundShape kRims[] = {{3, .03, 640}, {5, .03, 640}, {2, .02, 1280},
+                                {5, .05, 320}, {8, .03, 640}, {3, .01, 2048}};
 constexpr int kEach = 40;
 
 class Rim : public testing::TestWithParam<Grid> {};
 
 TEST_P(Rim, BesideAStraightInTheWindow) {
     for (const bool known : {false, true}) {
-        Centres count;
+        Coverage count;
         Dice dice(41);
-        for (const Arc& kind : kRims)
+        for (const RoundShape& kind : kRims)
             for (int i = 0; i < kEach; ++i) {
                 Scene s = rim(kind, GetParam(), 80, false, dice);
                 const double from = s.sheets[0][1].x();
@@ -82,26 +45,26 @@ TEST_P(Rim, BesideAStraightInTheWindow) {
 }
 
 TEST_P(Rim, BetweenTwoStraights) {
-    Centres count;
+    Coverage count;
     Dice dice(42);
-    for (const Arc& kind : kRims)
+    for (const RoundShape& kind : kRims)
         for (int i = 0; i < kEach; ++i) count.add(rim(kind, GetParam(), 70, true, dice), dice);
     count.expect(0.9, 0.93);
 }
 
 TEST_P(Rim, InTheWholeProfile) {
-    Centres count;
+    Coverage count;
     Dice dice(43);
-    for (const Arc& kind : kRims)
+    for (const RoundShape& kind : kRims)
         for (int i = 0; i < kEach; ++i) count.add(rim(kind, GetParam(), 80, false, dice), dice);
     count.expect(0.78, 0.93);
 }
 
 // From where it is all arc to where as much straight as the noise just hides is in it.
 TEST_P(Rim, BesideHardlyAnyStraight) {
-    Centres count;
+    Coverage count;
     Dice dice(44);
-    for (const Arc& kind : kRims)
+    for (const RoundShape& kind : kRims)
         for (int i = 0; i < kEach; ++i) {
             Scene s = rim(kind, GetParam(), 80, false, dice);
             const double from = s.sheets[0][1].x();

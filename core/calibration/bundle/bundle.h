@@ -54,10 +54,11 @@ struct BundleResult {
 
 // A poor or undetermined answer whose object or cameras fit in metres or inches says so.
 //
-// Error (input): cameras that are none, object and cameras all within 10 mm of their origins (metres), a sight of no camera or outside its image, weights negative or not finite, the
-// same feature at two places of the object, an unknown id excluded. Verdict undetermined: fewer than three features, all
-// on one line, two places that fit equally and no start. Poor: three sigma at a feature above 1 mm, noise above 1.5 px
-// or beyond what was stated, one camera against the others. Usable: above 0.2 mm or 0.5 px, no redundancy.
+// Error (input): cameras that are none, object and cameras all within 10 mm of their origins (metres), a sight of no
+// camera or outside its image, weights negative or not finite, the same feature at two places of the object, an
+// unknown id excluded. Verdict undetermined: fewer than three features, all on one line, two places that fit equally
+// and no start. Poor: three sigma at a feature above 1 mm, noise above 1.5 px or beyond what was stated, one camera
+// against the others. Usable: above 0.2 mm or 0.5 px, no redundancy.
 Expected<BundleResult> locate_object(const std::vector<PlacedCamera>& cameras,
                                      const std::vector<BundleSight>& sights, const BundleOptions& options);
 

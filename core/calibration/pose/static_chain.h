@@ -61,8 +61,8 @@ struct StaticChainOptions {
 // A link without covariance is taken as exact and named, the verdict at most usable; where none has one, sigma and shares
 // are zero: unknown.
 //
-// Error: no sensor, ids missing or twice, poses not rigid, a link shorter than 10 mm (camera_from_laser: 2 mm) and not zero (metres), covariances
-// not symmetric or with negative eigenvalues.
+// Error: no sensor, ids missing or twice, poses not rigid, a link shorter than 10 mm (camera_from_laser: 2 mm) and
+// not zero (metres), covariances not symmetric or with negative eigenvalues.
 Expected<StaticChainResult> calibrate_static(const std::vector<StaticSensor>& sensors,
                                              const StaticChainOptions& options = {});
 

@@ -1,13 +1,13 @@
 // Circle: the centre of a round piece of contour (a bead, a pin, a fixed sphere), robust against the rest of
 // it.
 //
-// Start: circles through three points at growing distances along the contour, the one with the most points
-// within the noise of its rim wins (fixed places, so the answer is always the same); only circles of allowed
-// radius whose points span minimum_arc_deg compete, since a straight fits any large circle. Then the sum of
-// squared distances from the rim is minimised (Gauss-Newton; the algebraic fit is biased to small radii on
-// short arcs) over the points within 3.5 robust sigma, until the set stands still. With a known radius only
-// the centre is fitted. Then once more together with the straights that run tangentially into the arc, if any do (arc_fit.h): their
-// first points lie within the noise of the rim, and taken for a part of it they make it flatter.
+// Start: circles through three points at growing distances along the contour, the one with the most points within the
+// noise of its rim wins (fixed places, so the answer is always the same); only circles of allowed radius whose points
+// span minimum_arc_deg compete, since a straight fits any large circle. Then the sum of squared distances from the
+// rim is minimised (Gauss-Newton; the algebraic fit is biased to small radii on short arcs) over the points within
+// 3.5 robust sigma, until the set stands still. With a known radius only the centre is fitted. Then once more
+// together with the straights that run tangentially into the arc, if any do (arc_fit.h): their first points lie
+// within the noise of the rim, and taken for a part of it they make it flatter.
 //
 // Covariance: sigma^2 (J^T J)^-1 of the centre, sigma from the residuals and the profile's noise, widened where neighbours
 // are alike (contour_noise.h). On a short arc the centre is hardly determined along the arc's bisector (with a free radius

@@ -1,13 +1,15 @@
 // Extremum: the highest, lowest, leftmost or rightmost place of a contour, between the samples.
 //
-// A parabola is fitted to the points within fit_length_mm around the extreme one (h over t: z over x for
-// highest and lowest, x over z for leftmost and rightmost), the window is centred on its vertex and the fit
-// repeated, so that the noise that made one point the extreme one does not choose the window. Unless it is given, that length
-// grows from 2 mm as long as the contour is a parabola within its noise on both sides: until a quartic through the same points
-// takes more than chance from the sum of squares, then it is the one before. Vertex t = -b /
-// (2 a), h = c - b^2 / (4 a); the covariance is that of (a, b, c) carried through these, noise from the
-// residuals, widened where neighbours are alike (contour_noise.h). The contour need not be a parabola (an arc between flanks, a ridge that noise hides): by how much a
-// quartic through the same points has its vertex elsewhere, beyond what noise makes of the difference, is added.
+// A parabola is fitted to the points within fit_length_mm around the extreme one (h over t: z over x for highest and
+// lowest, x over z for leftmost and rightmost), the window is centred on its vertex and the fit repeated, so that the
+// noise that made one point the extreme one does not choose the window. Unless it is given, that length grows from 2
+// mm as long as the contour is a parabola within its noise on both sides: until a quartic through the same points
+// takes more than chance from the sum of squares, then it is the one before, and one less where the bow is clear all
+// the same: just below what is seen, a form that is none still moves the vertex. Vertex t = -b / (2 a), h = c - b^2 /
+// (4 a); the covariance is that of (a, b, c) carried through these, noise from the residuals, widened where
+// neighbours are alike (contour_noise.h). The contour need not be a parabola (an arc between flanks, a ridge that
+// noise hides): by how much a quartic through the same points has its vertex elsewhere, beyond what noise makes of
+// the difference, is added.
 //
 // Where the contour has no smooth extremum (a ridge of a corner, the end of a slope) the parabola's vertex
 // means nothing: the status is then not_found, unless the extreme point is a contour's end, which

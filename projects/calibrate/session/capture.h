@@ -27,7 +27,8 @@ struct ReadCaptures {
     nlohmann::json settings;
     std::vector<Text> skipped;  // sentences: images without a board
 };
-// A JSON file as the command line takes it, or, where reads_images(), a folder of images with their pose files. Cancelled = Error whose `what` is kCancelled (projects/station/acquire.h).
+// A JSON file as the command line takes it, or, where reads_images(), a folder of images with their pose files.
+// Cancelled = Error whose `what` is kCancelled (projects/station/acquire.h).
 Expected<ReadCaptures> read_captures(const CalibrationMethod& method, const nlohmann::json& settings,
                                      const Calibration* base, const std::filesystem::path& path,
                                      const ReadProgress& progress, const std::stop_token& cancel);

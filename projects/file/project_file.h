@@ -66,7 +66,7 @@ struct RunSummary {
 
 // A scan of the part that is kept with the project; no part of a run's setup.
 struct StoredScan {
-    std::string name;                 // one of a kind in the file, at most kLongestId bytes
+    std::string name;                 // one of a kind in the file, at most kLongestId signs
     std::string utc;                  // when it was kept, ISO 8601; empty: now
     std::string sensor_id, robot_id;  // empty: not known (a run's)
     std::string path;                 // how it was made, for people: "spots T1, T2", "run 3"
@@ -155,7 +155,7 @@ class ProjectFile {
 
     Expected<Project> load() const;
     // Only rows that changed are written. Refuses (input) two entities of one id, empty ids and new ones of
-    // more than kLongestId bytes, and what check_part_types() does.
+    // more than kLongestId signs, and what check_part_types() does.
     Expected<void> save(const Project& project);
 
     // A whole run. Returns its number; events of the record get it too.

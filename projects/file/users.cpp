@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "projects/file/chain/chain.h"
+#include "projects/file/id_length.h"
 #include "projects/file/project_file_detail.h"
 #include "projects/file/row_checksum.h"
 
@@ -166,7 +167,7 @@ Expected<void> check_user_name(const std::string& name) {
         return input_error(why, utf8_text(shown), "give a name of letters, figures and single spaces");
     };
     if (name.empty()) return wrong("the user has no name");
-    if (name.size() > kLongestId) return wrong(Text("a user's name has at most {} bytes", kLongestId));
+    if (is_too_long(name)) return wrong(Text("a user's name has at most {} signs", kLongestId));
     for (std::size_t at = 0; at < name.size();)
         if (unseen(next_sign(name, at))) return wrong("a sign of the user's name is not seen");
     if (utf8_text(name) != name) return wrong("the user's name is not UTF-8");

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "projects/file/id_length.h"
 #include "projects/file/project_file.h"
 #include "projects/file/project_json.h"
 #include "projects/model/part_types.h"
@@ -43,8 +44,8 @@ Expected<std::string> cloned_id(const std::vector<T>& items, const std::string& 
     const std::string common = common_id(id, from) + "-" + to;
     std::string fresh = common;
     for (int n = 2; is_there(items, fresh); ++n) fresh = fmt::format("{}-{}", common, n);
-    if (fresh.size() > kLongestId)
-        return input_error(Text("\"{}\" is longer than {} bytes", fresh, kLongestId), Text("clone of {}", id),
+    if (is_too_long(fresh))
+        return input_error(Text("\"{}\" is longer than {} signs", fresh, kLongestId), Text("clone of {}", id),
                            "give it or the part type a shorter id");
     return fresh;
 }

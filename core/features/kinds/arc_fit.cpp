@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/geometry/pose.h"
 #include "core/numbers.h"
@@ -234,7 +235,8 @@ ArcFit::Found ArcFit::check(const Shape& shape, Side side) const {
 
 void ArcFit::average(const Shape& fullest, const ProfileNoise& noise, FittedArc& fitted) {
     std::array<Shape, 4> shapes;
-    std::array<double, 4> weights{};
+    constexpr double kNone = -std::numeric_limits<double>::infinity();
+    std::array<double, 4> weights{kNone, kNone, kNone, kNone};  // their logarithms first
     Vector5 row;
     Where where;
     const Ends ends(*this, fullest);
@@ -246,7 +248,6 @@ void ArcFit::average(const Shape& fullest, const ProfileNoise& noise, FittedArc&
     const double alike = alike_widening(scratch_, unknowns, noise);
     const double one = std::max(pooled.sigma_mm * pooled.sigma_mm, kLeastGate_mm * kLeastGate_mm);
     const double sigma2 = one * pooled.widening * alike;
-    double all = 0;
     for (int k = 0; k < 4; ++k) {
         const std::array<bool, 2> straight{(k & 1) != 0, (k & 2) != 0};
         if ((straight[left] && !fullest.straight[left]) || (straight[right] && !fullest.straight[right]))
@@ -256,11 +257,15 @@ void ArcFit::average(const Shape& fullest, const ProfileNoise& noise, FittedArc&
         shape.straight = straight;
         if (straight != fullest.straight && !minimise(shape, 20)) continue;
         const double worse = (shape.rss - fullest.rss) / (one * std::max(alike, 1.0));
-        weights[std::size_t(k)] = std::exp(-0.5 * worse - kUnknown * (shape.unknowns(known_) - unknowns));
-        all += weights[std::size_t(k)];
+        weights[std::size_t(k)] = -0.5 * worse - kUnknown * (shape.unknowns(known_) - unknowns);
     }
+    const double most = *std::max_element(weights.begin(), weights.end());  // the fullest's own is finite
+    double all = 0;
+    for (double& w : weights) all += w = std::exp(w - most);
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (int k = 0; k < 4; ++k) mean += weights[std::size_t(k)] / all * shapes[std::size_t(k)].p.head<3>();
+    for (int k = 0; k < 4; ++k)
+        if (weights[std::size_t(k)] > 0)
+            mean += weights[std::size_t(k)] / all * shapes[std::size_t(k)].p.head<3>();
     fitted.covariance.setZero();
     fitted.within.setZero();
     fitted.arc = fitted.rms = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "projects/file/id_length.h"
 #include "projects/file/project_json.h"
 #include "projects/model/part_types.h"
 #include "projects/proof/known_shift.h"
@@ -29,9 +30,9 @@ Expected<void> check_number(int value, int least, int most, const char* option) 
 Expected<void> check_parts(const LiveStudyOptions& o) {
     std::set<std::string> seen;
     for (const std::string& part : o.parts) {
-        if (part.empty() || part.size() > kLongestId || part != utf8_text(part))
+        if (part.empty() || is_too_long(part) || part != utf8_text(part))
             return usage_error(Text("\"{}\" names no part", utf8_text(part)), "--parts",
-                               Text("give a name of at most {} bytes", kLongestId));
+                               Text("give a name of at most {} signs", kLongestId));
         if (part.starts_with(kZeroShiftPrefix) || part.starts_with(kKnownShiftPrefix))
             return usage_error(Text("\"{}\" is a name of the proofs' own", part), "--parts",
                                "name the part otherwise");

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "devices/capture/capture.h"
+#include "projects/file/id_length.h"
 #include "projects/file/project_file_detail.h"
 #include "projects/file/row_checksum.h"
 
@@ -24,8 +25,8 @@ StoredScan scan_of_row(Statement& row) {
 Expected<void> ProjectFile::append_scan(const StoredScan& scan) {
     Database& db = impl_->db;
     const std::string name = utf8_text(scan.name);
-    if (name.empty() || name.size() > kLongestId)
-        return input_error(Text("a scan's name has 1 to {} bytes", kLongestId), db.path(),
+    if (name.empty() || is_too_long(name))
+        return input_error(Text("a scan's name has 1 to {} signs", kLongestId), db.path(),
                            "give another name");
     if (scan.cloud_ply.empty()) return input_error("the scan has no cloud", name);
     if (scan.cloud_ply.size() > kLargestScan)

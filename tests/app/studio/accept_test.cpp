@@ -62,8 +62,8 @@ class AcceptWay : public testing::Test {
         if (auto* box = me.find<QSpinBox>(spin))
             me.write(box->findChild<QLineEdit*>(), QString::number(value));
     }
-    bool idle() {
-        return DeskPerson::wait([&] { return !desk().worker().busy(); });
+    bool idle() {  // a study is a row of runs
+        return QTest::qWaitFor([&] { return !desk().worker().busy(); }, 6 * kPatienceMs);
     }
 };
 

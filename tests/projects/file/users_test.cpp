@@ -177,6 +177,10 @@ TEST(Users, NamesAndPasswordsThatAreNone) {
                                    "a\xe2\x80\x8b", "a\xef\xbb\xbf", "\xff", "a\xc3", "Ada"})
         EXPECT_FALSE(file.add_user(name, Role::engineer, "a good password")) << name;
     EXPECT_FALSE(file.add_user(std::string(65, 'x'), Role::engineer, "a good password"));
+    std::string umlauts;  // of two bytes each
+    for (int i = 0; i < 64; ++i) umlauts += "\xc3\xbc";
+    EXPECT_TRUE(file.add_user(umlauts, Role::engineer, "a good password"));
+    EXPECT_FALSE(file.add_user(umlauts + "x", Role::engineer, "a good password"));
     EXPECT_TRUE(file.add_user("J\xc3\xbcrgen M\xc3\xbcller", Role::engineer, "a good password"));
     EXPECT_FALSE(file.add_user("otto", Role::operator_, "short"));
     EXPECT_FALSE(file.add_user("operator", Role::operator_, "Operator"));

@@ -9,7 +9,8 @@ namespace seamwright {
 
 namespace {
 constexpr int kFrame_ms = 16;
-}
+constexpr int kLeastPlot_px = 20;  // below which nothing is drawn that could be read
+}  // namespace
 
 PlotCanvas::PlotCanvas(QWidget* parent) : QCustomPlot(parent) {
     setFocusPolicy(Qt::StrongFocus);
@@ -152,7 +153,8 @@ void PlotCanvas::paintEvent(QPaintEvent* event) {
 
 void PlotCanvas::set_equal_view(const QRectF& view) {
     const QRect area = axisRect()->rect();
-    const double width_px = std::max(20, area.width()), height_px = std::max(20, area.height());
+    const double width_px = std::max(kLeastPlot_px, area.width()),
+                 height_px = std::max(kLeastPlot_px, area.height());
     const double mm_per_px = std::max({view.width() / width_px, view.height() / height_px, 1e-6});
     const QPointF middle = view.center();
     xAxis->setRange(middle.x() - mm_per_px * width_px / 2, middle.x() + mm_per_px * width_px / 2);
@@ -166,12 +168,16 @@ void PlotCanvas::resizeEvent(QResizeEvent* event) {
         flush();
         return;
     }
-    const double mm_per_px = xAxis->range().size() / std::max(1, axisRect()->rect().width());
+    const int before_px = axisRect()->rect().width();
+    const double width_mm = xAxis->range().size();
     const QPointF middle(xAxis->range().center(), yAxis->range().center());
     QCustomPlot::resizeEvent(event);
     plotLayout()->update(QCPLayoutElement::upMargins);
     plotLayout()->update(QCPLayoutElement::upLayout);
-    const QSizeF size = QSizeF(axisRect()->rect().size()) * mm_per_px;
+    // A plot that has or had no room has no scale to keep: its width stays.
+    const bool scaled = std::min(before_px, axisRect()->rect().width()) >= kLeastPlot_px;
+    const QSizeF size =
+        scaled ? QSizeF(axisRect()->rect().size()) * (width_mm / before_px) : QSizeF(width_mm, 0);
     set_equal_view(
         QRectF(middle.x() - size.width() / 2, middle.y() - size.height() / 2, size.width(), size.height()));
     flush();

@@ -35,11 +35,13 @@ namespace {
 constexpr int kPageWidth = 440, kPageRoom_px = 120, kPageEdge_px = 12;
 constexpr QSize kFirstSize(1440, 900), kSmallestSize(1180, 660);  // logical pixels
 constexpr QSize kFrame_px(8, 40);   // of the window manager's, which the screen must hold too
-constexpr int kWideRail_px = 1280;  // of the window, in which the steps have words
+constexpr int kWideRail_px = 1200;  // of the window, in which the steps have their names
+constexpr int kRoomy_px = 1280;     // in which the page may be wider than it must
 // What the live profile keeps of the window's height, whatever stands below it.
 constexpr double kProfileShare = 0.35;
-constexpr int kLowerView_px = 160;     // of a view below it, at least
-constexpr int kReadablePlot_px = 300;  // in which an axis' label has room
+constexpr int kLowerView_px = 160;      // of a view below it, at least
+constexpr int kReadablePlot_px = 300;   // in which an axis' label has room
+constexpr int kHistogramWords_px = 60;  // of a histogram of three series: a line each
 constexpr int kLayoutVersion = 2;
 constexpr int kDevices_ms = 250;
 
@@ -145,6 +147,9 @@ MainWindow::MainWindow(Studio& studio) : studio_(studio), desk_(studio.desk()) {
     connect(&desk_, &Desk::modified_changed, this, [this](bool modified) {
         if (!modified) saved_->setText(tr("saved"));
     });
+    connect(&desk_.worker(), &StationWorker::busy_changed, this, [this](bool busy) {
+        if (!busy && trouble_->property("until_idle").toBool()) trouble_->hide();
+    });
     // A push that waits for its answer is shown wherever one is.
     connect(&desk_.worker(), &StationWorker::confirm_push, this, [this] { show_step(Step::run); });
 
@@ -193,7 +198,7 @@ void MainWindow::make_docks() {
     auto* chart_box = new QVBoxLayout(charts);
     chart_box->setContentsMargins(0, 0, 0, 0);
     charts->setFocusProxy(views_.trend);
-    charts->setMinimumHeight(kReadablePlot_px);
+    charts->setMinimumHeight(kReadablePlot_px + kHistogramWords_px);
     views_.residuals->setMinimumHeight(kReadablePlot_px);
     chart_box->addWidget(views_.trend, 3);
     chart_box->addWidget(views_.histogram, 2);
@@ -252,7 +257,8 @@ void MainWindow::make_central() {
                                                  accept,
                                                  run_page_};
     for (StepPage* page : pages) {
-        connect(page, &StepPage::step_wanted, this, &MainWindow::show_step);
+        step_pages_ << page;
+        connect(page, &StepPage::step_wanted, this, &MainWindow::lead_to);
         auto* scroll = new QScrollArea;
         scroll->setWidgetResizable(true);
         scroll->setFrameShape(QFrame::NoFrame);
@@ -286,8 +292,7 @@ void MainWindow::make_central() {
                                        tr("Puts the message away; the event log keeps it"),
                                        [this] { trouble_->hide(); }));
     trouble_->hide();
-    next_ = make_button("next_step", "next", {}, tr("Go to the next step"),
-                        [this] { show_step(push_waits() ? Step::run : next_step(desk_.steps())); });
+    next_ = make_button("next_step", "next", {}, tr("Go to the next step"), [this] { go_on(); });
     connect(run_page_, &RunPage::asks_changed, this, &MainWindow::refresh_next);
     auto* box = new QVBoxLayout(central);
     box->setContentsMargins(4, 0, 0, 4);
@@ -303,6 +308,15 @@ void MainWindow::show_step(Step step) {
     pages_->setCurrentIndex(static_cast<int>(step));
     rail_->show_step(step);
     refresh_next();
+}
+
+void MainWindow::go_on() {
+    lead_to(run_page_->asks() ? Step::run : next_step(desk_.steps()));
+}
+
+void MainWindow::lead_to(Step step) {
+    if (step != step_) return show_step(step);
+    step_pages_[static_cast<int>(step)]->point_out();
 }
 
 bool MainWindow::push_waits() const {
@@ -353,7 +367,8 @@ void MainWindow::resizeEvent(QResizeEvent* event) {
     QMainWindow::resizeEvent(event);
     const bool narrow = width() < kWideRail_px;
     rail_->set_narrow(narrow);
-    centralWidget()->setMaximumWidth(rail_->width() + kPageWidth + (narrow ? kPageEdge_px : kPageRoom_px));
+    centralWidget()->setMaximumWidth(rail_->width() + kPageWidth +
+                                     (width() < kRoomy_px ? kPageEdge_px : kPageRoom_px));
     views_.profile->setMinimumHeight(static_cast<int>(kProfileShare * height()));
     // The new height was shared out while the profile still asked for its part of the old one.
     QTimer::singleShot(0, this, [this] {

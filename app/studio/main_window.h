@@ -35,7 +35,7 @@ class MainWindow : public QMainWindow {
     void remember();                      // layout into the settings
     void toggle_full(QDockWidget* dock);  // one view alone, and back
     QList<QAction*> all_actions() const;  // what the palette lists
-    bool may_leave();                     // asks about unsaved edits
+    bool may_leave();                     // asks about running work and unsaved edits
     // Whoever touches neither mouse nor keyboard for so long is signed out; 0: never.
     int sign_out_minutes() const;
 
@@ -71,6 +71,9 @@ class MainWindow : public QMainWindow {
     void show_message(const QString& sentence, const char* tone);
     void place_message();
     bool push_waits() const;  // for an answer on a page that is not shown
+    void go_on();             // to the next step, or on its page to what is to be done there
+    void lead_to(Step step);
+    bool may_cancel();
     bool take_typed();
     QString project_to_write(const QString& title, const QString& suggestion);
     void new_project();
@@ -96,6 +99,7 @@ class MainWindow : public QMainWindow {
     StepRail* rail_ = nullptr;
     QStackedWidget* pages_ = nullptr;
     RunPage* run_page_ = nullptr;
+    QList<StepPage*> step_pages_;     // in the order of kSteps
     ManualWindow* manual_ = nullptr;  // once it was asked for
     QPushButton* next_ = nullptr;
     QString calibrating_;  // what a guided calibration says that it is at; empty: none is shown

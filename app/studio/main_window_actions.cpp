@@ -146,8 +146,8 @@ void MainWindow::make_steps_menu() {
                                 tr("Step %1: %2").arg(static_cast<int>(step) + 1).arg(step_name(step)),
                                 QKeySequence(QStringLiteral("Ctrl+%1").arg(static_cast<int>(step) + 1)),
                                 [this, step] { show_step(step); }));
-    steps->addAction(action("next", "next", tr("Go to the next step"), QKeySequence("Ctrl+Return"),
-                            [this] { show_step(next_step(desk_.steps())); }));
+    steps->addAction(
+        action("next", "next", tr("Go to the next step"), QKeySequence("Ctrl+Return"), [this] { go_on(); }));
 }
 
 void MainWindow::make_measure_menu() {
@@ -207,7 +207,10 @@ void MainWindow::make_view_menu() {
     // The window is built anew, and with it would go what a running job asks.
     const auto may_build = [this] {
         const bool busy = desk_.worker().busy();
-        if (busy) tell(tr("A job is running: end it first, the window is built anew for this."));
+        if (busy) {
+            tell(tr("A job is running: end it first, the window is built anew for this."));
+            trouble_->setProperty("until_idle", true);
+        }
         return !busy;
     };
     QAction* language =

@@ -7,6 +7,7 @@
 #include <QMessageBox>
 #include <QMimeData>
 #include <QPointer>
+#include <QPushButton>
 
 #include "app/studio/main_window.h"
 #include "app/studio/reuse_dialogs.h"
@@ -16,13 +17,14 @@
 #include "projects/reuse/exchange.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
+#include "widgets/pages/run_page.h"
 #include "widgets/print/pdf.h"
 #include "widgets/shown_text.h"
 
 namespace seamwright {
 
 bool MainWindow::may_leave() {
-    if (!take_typed()) return false;
+    if (!take_typed() || !may_cancel()) return false;
     if (!desk_.modified()) return true;
     QMessageBox box(
         QMessageBox::Question, tr("Unsaved edits"),
@@ -32,6 +34,28 @@ bool MainWindow::may_leave() {
     const int answer = box.exec();
     if (answer == QMessageBox::Save) return save();
     return answer == QMessageBox::Discard;
+}
+
+// Whoever closes the project cancels what runs: that happens with the project's end, so that a way back from the questions
+// that follow leaves it running.
+bool MainWindow::may_cancel() {
+    if (!desk_.worker().losable()) return true;
+    QMessageBox box(
+        QMessageBox::Question, tr("A job is running"),
+        run_page_->asks()
+            ? tr("A push waits for your answer. When the project is closed, nothing is pushed.")
+            : tr("A job is running. When the project is closed, it is cancelled and what it has measured "
+                 "so far may be lost."),
+        QMessageBox::NoButton, this);
+    box.setObjectName("running_question");
+    QPushButton* cancel = box.addButton(tr("Cancel the job and close"), QMessageBox::DestructiveRole);
+    cancel->setObjectName("cancel_and_close");
+    QPushButton* stay = box.addButton(tr("Stay"), QMessageBox::RejectRole);
+    stay->setObjectName("stay");
+    box.setDefaultButton(stay);
+    box.setEscapeButton(stay);
+    box.exec();
+    return box.clickedButton() == cancel;
 }
 
 // What is typed into a field counts before the project is saved or left. False: it is refused there, and stays.

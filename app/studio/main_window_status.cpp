@@ -12,6 +12,7 @@
 #include "app/studio/main_window.h"
 #include "app/studio/sign_in_dialog.h"
 #include "app/studio/studio.h"
+#include "widgets/pages/run_page.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
 
@@ -66,13 +67,14 @@ void MainWindow::refresh_next() {
         next_->setToolTip(text);
     };
     // A calibration that is led through has the marked key itself.
-    const bool led = !calibrating_.isEmpty() && !push_waits();
+    const bool led = !calibrating_.isEmpty() && !run_page_->asks();
     if (next_->property("quiet").toBool() != led) {
         next_->setProperty("quiet", led);
         next_->style()->unpolish(next_);
         next_->style()->polish(next_);
     }
     if (push_waits()) return say(tr("A push waits for your answer: go to Run"));
+    if (run_page_->asks()) return say(tr("Answer above: push, or do not push"));
     for (const StepState& s : desk_.steps()) {
         if (s.status != StepStatus::next) continue;
         if (!led) return say(tr("Next: %1 - %2").arg(step_name(s.step), s.why));
@@ -143,6 +145,7 @@ void MainWindow::tell_done(const QString& sentence) {
 void MainWindow::show_message(const QString& sentence, const char* tone) {
     trouble_text_->setText(sentence);
     trouble_->setProperty("tone", tone);
+    trouble_->setProperty("until_idle", false);
     trouble_->style()->unpolish(trouble_);
     trouble_->style()->polish(trouble_);
     place_message();

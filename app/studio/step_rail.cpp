@@ -9,6 +9,7 @@ namespace seamwright {
 namespace {
 
 constexpr int kWide_px = 164, kNarrow_px = 72;
+constexpr double kSmall = 0.8;  // of the narrow rail's words
 
 }  // namespace
 
@@ -31,6 +32,7 @@ StepRail::StepRail(Desk& desk) : desk_(desk) {
         buttons_[i]->setAutoExclusive(true);
         buttons_[i]->setMinimumHeight(38);
         states_[i] = new QLabel;
+        states_[i]->setWordWrap(true);
         box->addWidget(buttons_[i]);
         box->addWidget(states_[i]);
     }
@@ -46,7 +48,10 @@ void StepRail::set_narrow(bool narrow) {
     for (const Step step : kSteps) {
         const auto i = static_cast<std::size_t>(step);
         buttons_[i]->setText(narrow ? QString::number(i + 1) : tr("%1 %2").arg(i + 1).arg(step_name(step)));
-        states_[i]->setContentsMargins(narrow ? 22 : 34, 0, 0, 6);
+        states_[i]->setContentsMargins(narrow ? 4 : 34, 0, 0, narrow ? 2 : 6);
+        QFont small = font();
+        if (narrow) small.setPointSizeF(small.pointSizeF() * kSmall);
+        states_[i]->setFont(small);
     }
     refresh();
 }
@@ -65,7 +70,7 @@ void StepRail::refresh() {
                                                              : QString();
         const QString word = stale ? tr("next, stale") : status_word(s.status);
         states_[i]->setAccessibleName(QStringLiteral("%1: %2").arg(step_name(s.step), word));
-        set_verdict(*states_[i], narrow_ ? sign : (sign + ' ' + word).trimmed(),
+        set_verdict(*states_[i], (sign + ' ' + word).trimmed(),
                     s.status == StepStatus::done             ? Tone::good
                     : s.status == StepStatus::stale || stale ? Tone::attention
                                                              : Tone::plain);

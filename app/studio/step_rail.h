@@ -15,7 +15,8 @@ class StepRail : public QWidget {
   public:
     explicit StepRail(Desk& desk);
     void show_step(Step step);
-    // Of a small window: numbers and signs alone, the words in the tips; the views have the room.
+    // Of a small window: numbers alone, the steps' names in the tips and their states in small type; the views have the
+    // room.
     void set_narrow(bool narrow);
 
   signals:

@@ -96,6 +96,18 @@ std::filesystem::path behind_links(const std::filesystem::path& path) {
     return at;
 }
 
+Expected<void> check_replaceable(const std::filesystem::path& path) {
+    constexpr std::string_view kDatabase("SQLite format 3", 16);  // with its 0
+    struct stat info {};
+    if (::stat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) return {};
+    Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+    char begin[kDatabase.size()];
+    if (file.fd < 0 || ::read(file.fd, begin, sizeof begin) != static_cast<ssize_t>(sizeof begin)) return {};
+    if (std::string_view(begin, sizeof begin) != kDatabase) return {};
+    return input_error("is a project or a recording, which nothing else may replace", path.string(),
+                       "give the name of another file");
+}
+
 Expected<void> write_text_file(const std::filesystem::path& path, std::string_view text) {
     if (path.filename().empty()) return file_error("names no file", path.string(), "give the path of a file");
     const auto failed = [&](const Text& message) {
@@ -115,6 +127,7 @@ Expected<void> write_text_file(const std::filesystem::path& path, std::string_vi
         if (through.fd < 0 || !write_all(through.fd, text)) return failed(system_message());
         return {};
     }
+    SEAM_OK(check_replaceable(path));
     const std::filesystem::path target = behind_links(path);
     std::string temporary = target.string() + ".XXXXXX";
     Descriptor file{::mkostemp(temporary.data(), O_CLOEXEC)};

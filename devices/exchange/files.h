@@ -23,8 +23,12 @@ Expected<std::string> read_text_file(const std::filesystem::path& path,
 // that a crash leaves either the old file or the new one. A link stays: what it leads to is written so. A
 // device, a FIFO and a descriptor of this process (/dev/stdout, /dev/fd/3, /proc/self/fd/1) stay too: written
 // through, as a shell writes, and a FIFO is waited for until somebody reads it. Error (file) when the folder
-// is missing or not writable.
+// is missing or not writable. Error (input) where a project, a recording or another database (SQLite) stands: what is
+// written here never takes the place of one.
 Expected<void> write_text_file(const std::filesystem::path& path, std::string_view text);
+
+// Error (input) where that stands.
+Expected<void> check_replaceable(const std::filesystem::path& path);
 
 // Where a file of this name comes to stand: behind the links that the name leads through, which need not lead
 // to a file yet. `path` itself where it is no link.

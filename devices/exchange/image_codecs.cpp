@@ -1,6 +1,9 @@
 #include "devices/exchange/image_codecs.h"
 
 #include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <cstdlib>
 
 namespace seamwright {
 namespace {
@@ -16,6 +19,8 @@ const Codecs& codecs() {
         Codecs c;
         std::error_code none;
         const auto beside = std::filesystem::read_symlink("/proc/self/exe", none).parent_path() / kCodecsFile;
+        // Read when OpenCV's codecs are loaded: a header that claims more is refused before memory is taken for it.
+        ::setenv("OPENCV_IO_MAX_IMAGE_PIXELS", fmt::format_int(kMostImagePixels).c_str(), 1);
         void* const object = dlopen(beside.c_str(), RTLD_NOW | RTLD_LOCAL);
         if (object) {
             c.decode = reinterpret_cast<DecodeImage>(dlsym(object, kDecodeImage));

@@ -11,6 +11,8 @@
 
 namespace seamwright {
 
+inline constexpr std::size_t kMostImagePixels = std::size_t{1} << 26;
+
 // What the bytes of an image file hold, channels and depth as stored, turned by no tag. Empty where they are no image. Throws
 // cv::Exception or std::bad_alloc where the header lies. Error (file): this installation is without its codecs.
 Expected<cv::Mat> decode_image(const std::string& bytes);

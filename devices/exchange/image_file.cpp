@@ -162,8 +162,6 @@ Expected<void> read_image_file(const std::filesystem::path& path, Frame& frame, 
         if (image.depth() != CV_8U && image.depth() != CV_16U) {
             return file_error("the image has neither 8 nor 16 bit", path.string());
         }
-        if (image.total() > (std::size_t{1} << 28))
-            return file_error("the image is too large", path.string());
         if (image.channels() == 3 || image.channels() == 4) image = one_channel(image, channel);
         if (image.channels() != 1) return file_error("the image is neither grey nor colour", path.string());
         const bool wide = image.depth() == CV_16U;
@@ -185,7 +183,9 @@ Expected<void> read_image_file(const std::filesystem::path& path, Frame& frame, 
         }
         frame.image = {frame.pixels.data(), image.cols, image.rows, row, depth};
     } catch (const std::exception& e) {  // cv::Exception, bad_alloc of a header that lies about its size
-        return file_error("is no readable image", path.string(), "give PNG, BMP, TIFF or PGM");
+        return file_error(
+            Text("is no readable image, or one of more than {} million pixels", kMostImagePixels >> 20),
+            path.string(), "give PNG, BMP, TIFF or PGM");
     }
     return {};
 }

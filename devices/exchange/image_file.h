@@ -22,8 +22,8 @@ std::optional<ImageChannel> image_channel(std::string_view word);
 // PNG, BMP, TIFF, PGM/PPM or JPEG (lossy: smears a stripe) of 8 or 16 bit into `frame.pixels` and
 // `frame.image`, rows packed, colour as `channel` says. `bit_depth` 0 takes the container's 8 or 16; 10 or 12
 // says that the words of a 16 bit file hold only so many bits, right-aligned (a larger value is then an
-// Error). Error (file): missing, unreadable, truncated, not an image, floating point, larger than 2^28
-// pixels. Of a failed read the frame keeps no image.
+// Error). Error (file): missing, unreadable, truncated, not an image, floating point, more than kMostImagePixels
+// (image_codecs.h). Of a failed read the frame keeps no image.
 Expected<void> read_image_file(const std::filesystem::path& path, Frame& frame, int bit_depth = 0,
                                ImageChannel channel = ImageChannel::grey);
 

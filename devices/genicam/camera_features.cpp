@@ -301,6 +301,43 @@ Expected<void> apply_settings(ArvCamera* camera, const GenicamSettings& s) {
     return set_trigger(camera, s.trigger);
 }
 
+Expected<void> check_field(ArvCamera* camera, const GenicamSettings& s,
+                           const std::map<std::string, double>& changed) {
+    GFailure g;
+    const char* name = arv_camera_get_pixel_format_as_string(camera, g.out());
+    const PixelFormat* format = name ? pixel_format_by_name(name) : nullptr;
+    if (s.range || (format && format->is_range())) return {};
+    const struct {
+        const char* feature;
+        gint64 plain;
+        bool said;
+    } fields[] = {{"OffsetX", 0, s.x || s.width || changed.contains("region_x")},
+                  {"OffsetY", 0, s.y || s.height || changed.contains("region_y")},
+                  {"BinningHorizontal", 1, false},
+                  {"BinningVertical", 1, false},
+                  {"DecimationHorizontal", 1, false},
+                  {"DecimationVertical", 1, false},
+                  {"ReverseX", 0, false},
+                  {"ReverseY", 0, false}};
+    for (const auto& [feature, plain, said] : fields) {
+        if (said || s.features.contains(feature) || !has(camera, feature)) continue;
+        const bool mirror = std::string_view(feature).starts_with("Reverse");
+        const gint64 now = mirror ? arv_camera_get_boolean(camera, feature, g.out())
+                                  : arv_camera_get_integer(camera, feature, g.out());
+        if (g || now == plain) continue;
+        return failure(
+            camera,
+            Text("its {} is {}, which the sensor's settings do not say: its image is not the one "
+                 "that was calibrated",
+                 feature, now),
+            {},
+            Text("set it to {} on the camera, or name it in the settings under \"{}\" and calibrate "
+                 "with it",
+                 plain, std::string_view(feature).starts_with("Offset") ? "region" : "features"));
+    }
+    return {};
+}
+
 CameraParameters read_parameters(ArvCamera* camera) {
     CameraParameters read;
     auto& list = read.list;

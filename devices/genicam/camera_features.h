@@ -1,6 +1,8 @@
 #pragma once
 // Opening an Aravis camera and its features by our names. For the .cpp files of this folder only.
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "core/parameter.h"
@@ -19,6 +21,17 @@ std::string address_of(ArvCamera* camera);
 
 // All but the trigger, in the order of genicam.h; then the trigger.
 Expected<void> apply_settings(ArvCamera* camera, const GenicamSettings& settings);
+
+// Part of the sensor that an image shows, px.
+struct ImageField {
+    int x = 0, y = 0, width = 0, height = 0;
+    bool operator==(const ImageField&) const = default;
+};
+// A calibration holds for the sensor's own pixels, or for those that the settings name (or `changed`, by set()).
+// Error (device): the camera's image begins elsewhere, is binned, thinned or mirrored, and nobody has said so. A cut
+// at the far sides moves no pixel; range cameras say their coordinates themselves.
+Expected<void> check_field(ArvCamera* camera, const GenicamSettings& settings,
+                           const std::map<std::string, double>& changed);
 
 // exposure_us, gain_db, frame_rate_hz, region_x, region_y, region_width, region_height, pixel_format (those
 // that can be read), trigger: as far as the camera has them. default_value is the present value. Ends where the camera falls

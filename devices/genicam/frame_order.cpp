@@ -10,15 +10,20 @@ constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kFar = 50 * kMs;
 // Another trigger fits better when it is closer by more than this.
 constexpr std::int64_t kCloser = 3 * kMs;
+// More frames than these are not lost before one comes.
+constexpr std::uint64_t kMostAtStart = 8;
 
 }  // namespace
 
 std::uint64_t FrameCounter::sequence(std::uint64_t frame_id) {
     if (!last_id_) {
         last_id_ = frame_id;
+        if (frame_id == 1 && before_) counts_anew_ = true;
+        const bool counts_on = !counts_anew_ && before_ && frame_id == *before_ + 1;
+        if (from_one_ && !counts_on && frame_id > 1 && frame_id - 1 <= kMostAtStart) at_start_ = frame_id - 1;
         if (any_) ++highest_;
         any_ = true;
-        return highest_;
+        return highest_ += at_start_;
     }
     const std::uint64_t last = *last_id_;
     std::uint64_t ahead = 0, back = 0;
@@ -40,6 +45,13 @@ std::uint64_t FrameCounter::sequence(std::uint64_t frame_id) {
         return highest_;
     }
     return back > highest_ ? 0 : highest_ - back;
+}
+
+void FrameCounter::restart(bool from_one) {
+    if (last_id_) before_ = last_id_;
+    last_id_.reset();
+    from_one_ = from_one;
+    at_start_ = 0;
 }
 
 void TriggerPairing::restart() {

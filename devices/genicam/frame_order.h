@@ -13,14 +13,27 @@ namespace seamwright {
 // Frame numbers of a camera to a sequence that counts up by 1. GigE Vision 1 counts 1..65535 and then 1 again
 // (0 is no frame; some cameras send it all the same), GigE Vision 2 and USB3 Vision count 64 bits. A number
 // that goes back by less than half the 16-bit circle is a frame out of order, not a wrap.
+//
+// GigE Vision lets the number begin at 1 with the stream, so a first frame that begins a little later shows how many
+// before it were lost. A camera that counts on from one stream to the next, against the standard, is known by that;
+// a number far off tells nothing.
 class FrameCounter {
   public:
-    // Sequence of the frame with that number. The first frame after restart() follows the highest so far.
+    // Sequence of the frame with that number. The first frame after restart() follows the highest so far, and
+    // those that were lost before it.
     std::uint64_t sequence(std::uint64_t frame_id);
-    void restart() { last_id_.reset(); }
+    // `from_one`: the numbers of what follows begin at 1.
+    void restart(bool from_one = false);
+    bool fresh() const { return !last_id_; }                   // no frame since restart()
+    std::uint64_t lost_at_start() const { return at_start_; }  // before the first since restart()
+    // Sequence of a frame without number, that comes now.
+    std::uint64_t unnumbered() const { return fresh() && any_ ? highest_ + 1 : highest_; }
 
   private:
     std::optional<std::uint64_t> last_id_;  // of the highest sequence
+    std::optional<std::uint64_t> before_;   // last_id_ of the stream before
+    bool from_one_ = false, counts_anew_ = false;
+    std::uint64_t at_start_ = 0;
     std::uint64_t highest_ = 0;
     bool any_ = false;
 };

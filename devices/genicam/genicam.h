@@ -9,11 +9,12 @@
 // control, a pixel format that cannot be read.
 //
 // Frames. A frame of any buffer status but success is delivered `incomplete` (`corrupt` when its size or
-// format is wrong) without image or profile, and counted as damaged. Range cameras: each row is a frame of
+// format, or the part of the sensor that it shows, is not the one it was started with) without image or profile, and counted as damaged. Range cameras: each row is a frame of
 // its own, in order, sequence = image * rows + row; a damaged image is one damaged frame. sequence follows
 // FrameCounter of frame_order.h and counts on over stops and reconnections; frames missing in it are counted
 // as lost; a damaged frame whose number got
-// lost too carries that of the frame before it. device_time_ns is the camera's time stamp, host_time_ns the
+// lost too carries that of the frame before it. Of a camera on a trigger line the frames lost before an acquisition's
+// first are delivered too, `incomplete` and without times. device_time_ns is the camera's time stamp, host_time_ns the
 // arrival of the last packet.
 //
 // Software triggers carry their spot to their frame as TriggerPairing of frame_order.h says; a frame whose

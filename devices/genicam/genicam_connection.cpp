@@ -62,6 +62,7 @@ Expected<void> GenicamSource::connect() {
     const SensorIdentity identity = identity_of(camera.get());
     SEAM_OK(apply_settings(camera.get(), settings_));
     for (const auto& [name, value] : changed_) SEAM_OK(set_parameter(camera.get(), name, value));
+    SEAM_OK(check_field(camera.get(), settings_, changed_));
     camera_ = std::move(camera);
     identity_ = identity;
     address_ = address_of(camera_.get());

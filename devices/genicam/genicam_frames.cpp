@@ -41,6 +41,23 @@ void GenicamSource::fill_payload(ArvBuffer* buffer, Frame& frame) {
         frame.status = FrameStatus::corrupt;
 }
 
+// Whether the image shows what the camera was started with: of ranges the columns, which its lines may end early.
+bool GenicamSource::as_armed(ArvBuffer* buffer) const {
+    ImageField f;
+    arv_buffer_get_image_region(buffer, &f.x, &f.y, &f.width, &f.height);
+    return range_ ? f.x == armed_.x && f.width == armed_.width : f == armed_;
+}
+
+// In the place of one that nothing came of, and that no later number shows.
+FramePtr GenicamSource::lost_frame(std::uint64_t sequence) {
+    auto frame = std::make_shared<Frame>();
+    frame->status = FrameStatus::incomplete;
+    frame->sequence = sequence;
+    ++counters_.lost;
+    last_sequence_ = sequence;
+    return frame;
+}
+
 // Takes the buffer. nullptr: nothing to deliver, or its rows follow.
 FramePtr GenicamSource::convert(ArvBuffer* buffer, const Arrival& arrival) {
     const ArvBufferStatus status = arv_buffer_get_status(buffer);
@@ -49,7 +66,7 @@ FramePtr GenicamSource::convert(ArvBuffer* buffer, const Arrival& arrival) {
         return nullptr;
     }
     count_gap(arrival);
-    const bool whole = status == ARV_BUFFER_STATUS_SUCCESS && arrival.buffer == buffer;
+    const bool whole = status == ARV_BUFFER_STATUS_SUCCESS && arrival.buffer == buffer && as_armed(buffer);
     if (range_ && whole && arrival.answer.verdict != TriggerPairing::Verdict::late) {
         rows_ = buffer;
         rows_arrival_ = arrival;
@@ -62,7 +79,7 @@ FramePtr GenicamSource::convert(ArvBuffer* buffer, const Arrival& arrival) {
         give_back(buffer);
         return nullptr;
     }
-    frame->sequence = arrival.numbered ? arrival.sequence : last_sequence_.value_or(0);
+    frame->sequence = arrival.sequence;
     frame->host_time_ns = arrival.host_ns;
     if (arrival.answer.verdict == TriggerPairing::Verdict::late) {
         frame->status = FrameStatus::late;

@@ -47,7 +47,8 @@ const SettingTable& genicam_settings() {
          object("region",
                 {whole("x", nullptr, 0, 65535, "first column"), whole("y", nullptr, 0, 65535, "first row"),
                  whole("width", nullptr, 1, 65535, "columns"), whole("height", nullptr, 1, 65535, "rows")},
-                "part of the image that is sent; else the camera's own"),
+                "part of the image that is sent; else all of it, and a camera whose image begins elsewhere "
+                "is refused"),
          text("pixel_format", nullptr, "by its GenICam name; else Mono8"),
          choice("channel", {"grey", "red", "green", "blue", "red-difference"},
                 "of colour formats: what is made into the image"),

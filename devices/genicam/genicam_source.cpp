@@ -44,10 +44,12 @@ Expected<void> GenicamSource::start() {
     }
     if (is_lost()) bury();
     if (camera_) {
-        if (auto done = start_stream(); done) {
+        auto done = start_stream();
+        if (done) {
             running_ = true;
             return {};
         }
+        if (done.error().code == ErrorCode::not_ready) return done;  // it answers
         bury();  // it may have been switched off and on since, which no heartbeat has told yet
     }
     // A part waits: whatever attempts failed before, now is the next.
@@ -156,6 +158,9 @@ Expected<FramePtr> GenicamSource::wait_next(milliseconds timeout) {
                 {
                     const std::lock_guard arrivals(arrivals_);
                     if (done_.empty()) break;
+                    Arrival& next = done_.front();
+                    if (next.lost_before > unnumbered_ && tells_lost_first())
+                        return lost_frame(next.sequence - next.lost_before--);
                     arrival = std::move(done_.front());
                     done_.pop_front();
                 }

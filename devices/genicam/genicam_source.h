@@ -67,6 +67,7 @@ class GenicamSource final : public ProfileSource {
         ArvBuffer* buffer = nullptr;
         bool numbered = false;
         std::uint64_t sequence = 0;
+        std::uint64_t lost_before = 0;  // of this acquisition, whose first it is
         std::int64_t host_ns = 0;
         TriggerPairing::Answer answer;
     };
@@ -86,11 +87,17 @@ class GenicamSource final : public ProfileSource {
     Expected<void> start_stream();                             // control_ held
     void stop_stream();                                        // control_ held
     Expected<void> take_format();                              // control_ held
+    Expected<void> wait_until_armed();                         // control_ held
     Expected<void> open_stream(guint payload);                 // control_ held
     void take_statistics();                                    // control_ held
     void count_gap(const Arrival& arrival);
     FramePtr convert(ArvBuffer* buffer, const Arrival& arrival);
     FramePtr next_row();
+    FramePtr lost_frame(std::uint64_t sequence);
+    bool as_armed(ArvBuffer* buffer) const;
+    bool tells_lost_first() const {
+        return trigger_ != "software" && trigger_ != "free" && (!range_ || armed_.height == 1);
+    }
     void give_back(ArvBuffer* buffer) {
         arv_buffer_set_frame_id(buffer, kNoNumber);
         arv_stream_push_buffer(stream_.get(), buffer);
@@ -119,6 +126,7 @@ class GenicamSource final : public ProfileSource {
     std::string trigger_;                    // as set
     std::map<std::string, double> changed_;  // by set(), to be restored
     bool running_ = false, range_ = false;
+    ImageField armed_;
     RangeMapping mapping_;
     std::unique_ptr<FramePool> pool_;
     std::size_t pool_size_ = 0;

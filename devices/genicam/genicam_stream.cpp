@@ -17,6 +17,9 @@
 namespace seamwright {
 namespace {
 
+// For a camera to wait for triggers, at least; and where its status may be another.
+constexpr std::chrono::milliseconds kArming{3000}, kStatusUnknown{300};
+
 // Aravis sets the size of its socket's buffer when the first frame has begun, and a first frame that comes in
 // one burst does not fit in the kernel's default. The socket is found by its port; where it is not, Aravis'
 // way remains.
@@ -61,9 +64,12 @@ void GenicamSource::arrived(ArvBuffer* buffer) {
         Arrival a;
         a.buffer = buffer;
         a.host_ns = host_now_ns();
+        a.sequence = counter_.unnumbered();
         a.numbered = arv_buffer_get_frame_id(buffer) != kNoNumber;
         if (a.numbered && status != ARV_BUFFER_STATUS_ABORTED && status != ARV_BUFFER_STATUS_CLEARED) {
+            const bool first = counter_.fresh();
             a.sequence = counter_.sequence(arv_buffer_get_frame_id(buffer));
+            if (first) a.lost_before = counter_.lost_at_start();
             // Of a damaged frame the packet with the time may be the one that got lost.
             const bool whole = status == ARV_BUFFER_STATUS_SUCCESS;
             a.answer = pairing_.arrived(
@@ -89,9 +95,12 @@ Expected<void> GenicamSource::take_format() {
         SEAM_TRY(auto mapping, range_mapping(camera_.get()));
         mapping_ = mapping;
     }
-    gint x = 0, y = 0, width = 0, height = 0;
-    arv_camera_get_region(camera_.get(), &x, &y, &width, &height, g.out());
-    mapping_.first_column = x;
+    SEAM_OK(check_field(camera_.get(), settings_, changed_));
+    arv_camera_get_region(camera_.get(), &armed_.x, &armed_.y, &armed_.width, &armed_.height, g.out());
+    if (g)
+        return device_error(Text("the region of its images cannot be read ({})", g.text()),
+                            settings_.camera_name());
+    mapping_.first_column = armed_.x;
     // Rows are small and many.
     const auto handed_out = static_cast<std::size_t>(settings_.buffers) * (range_ ? 32 : 1);
     if (handed_out != pool_size_) pool_ = std::make_unique<FramePool>(pool_size_ = handed_out);
@@ -143,7 +152,7 @@ Expected<void> GenicamSource::start_stream() {
     {
         const std::lock_guard lock(arrivals_);
         done_.clear();
-        counter_.restart();
+        counter_.restart(gige);
         pairing_.restart();
         stopped_ = false;
     }
@@ -155,14 +164,34 @@ Expected<void> GenicamSource::start_stream() {
         stop_stream();
         return device_error(Text("the acquisition cannot be started ({})", why), settings_.camera_name());
     }
-    // Where the camera tells, triggers are not sent before it waits for them.
-    if (arv_camera_is_feature_available(camera, "AcquisitionStatus", g.out())) {
-        for (int i = 0; i < 300; ++i) {
-            if (arv_camera_get_boolean(camera, "AcquisitionStatus", g.out()) || g) break;
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
+    if (auto armed = wait_until_armed(); !armed) {
+        stop_stream();
+        return armed;
     }
     return {};
+}
+
+// Where the camera tells, triggers are not sent before it waits for them. A status that says something else than that
+// is waited for, but nothing is concluded from it.
+Expected<void> GenicamSource::wait_until_armed() {
+    GFailure g;
+    ArvCamera* camera = camera_.get();
+    if (!arv_camera_is_feature_available(camera, "AcquisitionStatus", g.out())) return {};
+    const char* selected = arv_camera_is_feature_available(camera, "AcquisitionStatusSelector", g.out())
+                               ? arv_camera_get_string(camera, "AcquisitionStatusSelector", g.out())
+                               : nullptr;
+    const bool tells = !g && selected && std::string(selected) == "FrameTriggerWait" && trigger_ != "free";
+    const auto most = std::max(settings_.timeout, kArming);
+    const auto begun = std::chrono::steady_clock::now();
+    for (;;) {
+        if (arv_camera_get_boolean(camera, "AcquisitionStatus", g.out()) || g) return {};
+        const auto waited = std::chrono::steady_clock::now() - begun;
+        if (waited > (tells ? most : kStatusUnknown)) break;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    if (!tells) return {};
+    return device_error(ErrorCode::not_ready, Text("it does not arm within {} ms", most.count()),
+                        settings_.camera_name(), "check its trigger settings, or raise timeout_ms");
 }
 
 void GenicamSource::take_statistics() {

@@ -4,11 +4,13 @@ namespace seamwright {
 
 void Handshake::hear(const LineWords& words, Time now) {
     const bool rises = heard_ && words.start && !words_.start;
+    const bool back = !heard_;
     const bool beats = !heard_ || words.heartbeat != words_.heartbeat;
     if (beats) beat_ = now;
     heard_ = true;
     words_ = words;
     if (!options_.line_starts || silent(now)) return;
+    if (back && phase_ == Phase::done && !shown_ && !words.start) result_stays_ = true;
     const bool waits = phase_ == Phase::idle || (phase_ == Phase::done && result_stays_);
     if (rises && waits) {
         phase_ = Phase::called;
@@ -35,12 +37,13 @@ void Handshake::advance(const LineState& state, Time now) {
         phase_ = Phase::done;
         done_at_ = now;
         not_followed_ = true;
-        result_stays_ = false;
+        result_stays_ = shown_ = false;
     }
     if (phase_ == Phase::busy && state.results != results_) {
         phase_ = Phase::done;
         done_at_ = now;
-        result_stays_ = !words_.start || !heard_;
+        result_stays_ = !words_.start;
+        shown_ = false;
     }
 }
 
@@ -66,9 +69,10 @@ HandshakeBits Handshake::bits(const LineState& state, Time now) {
         return bits;
     }
     advance(state, now);
-    bits.ready = state.ready && phase_ == Phase::idle;
+    bits.ready = state.ready && (phase_ == Phase::idle || (phase_ == Phase::done && result_stays_));
     bits.busy = phase_ == Phase::busy;
     bits.done = phase_ == Phase::done;
+    shown_ = shown_ || (bits.done && heard_);
     if (bits.done && not_followed_) {
         bits.result = LineResult::not_measured;
         bits.alarm = LineAlarm::call_not_followed;

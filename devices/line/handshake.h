@@ -8,7 +8,8 @@
 //   start 1 -> 0   done gone: idle
 // A start that is 1 when the line is first heard, or after it was lost, starts nothing: it has to be seen at 0.
 // Dropped before busy: the call is withdrawn. Dropped while busy: the part is given up (LineLink::given_up), its result
-// stays `done` until the next start. Not taken in call_timeout: done with not_measured. Not dropped in drop_timeout: an
+// stays `done` until the next start, which may come at once: ready stands beside it. So does that of a part which ended
+// while the line was away, where its start has gone meanwhile. Not taken in call_timeout: done with not_measured. Not dropped in drop_timeout: an
 // alarm, and nothing starts until it is.
 // The line is silent when its heartbeat has not changed for heartbeat_timeout (0: not watched): a waiting call is
 // withdrawn, nothing starts, an alarm.
@@ -64,6 +65,7 @@ class Handshake {
     std::uint32_t results_ = 0;  // when the call was taken
     bool not_followed_ = false;  // the call ended without the station
     bool result_stays_ = false;  // start went before the result came
+    bool shown_ = false;         // `done`, to a line that was there
 };
 
 }  // namespace seamwright

@@ -17,8 +17,9 @@ Setting "start": "line". The line starts the parts.
 
 A start that is 1 when the station begins, when the connection comes back or after an alarm 34 starts nothing: the line writes
 0 first. Start 0 before busy withdraws the call. Start 0 while busy gives the part up: what is measured is measured to its
-end, but no robot is waited for any longer; done stays until the next start. A call that the station cannot follow in
-call_timeout_ms ends with done 1, result 8 and alarm 30.
+end, but no robot is waited for any longer; done stays until the next start, and ready 1 beside it says that this may come.
+A part that ends while the connection is away is answered when it is back: by step 4 where start is still 1, else as one
+that was given up. A call that the station cannot follow in call_timeout_ms ends with done 1, result 8 and alarm 30.
 
 Setting "start": "robot" (where nothing is set). The robot's call starts the part; what stands in part_type, paint,
 part_number and part_name at that instant goes with it. start is not looked at; busy and done follow the station.
@@ -33,7 +34,8 @@ gets exception 1, any other address 2, counts and lengths that are none 3, anoth
 idle_ms, in the middle of a frame for 1 s, or sends what is no frame is closed. One answer is of one instant.
 
 modbus-client: the PLC is the server and holds the same registers, the line's at read_address, the station's at write_address.
-They are read and written every poll_ms, regions before the rest.
+They are read and written every poll_ms, regions before the rest; the status of regions that there are not becomes 0 with the
+connection, where the PLC has these words.
 
 Addresses count from 0. Two words: the high word first (big endian). Texts: two signs a word, the first in the high byte, ended
 by 0. Lengths are counted in 0.001 mm and angles in 0.001 degree, standard deviations are rounded up; -2147483648 is no value.

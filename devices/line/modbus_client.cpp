@@ -69,7 +69,7 @@ class ModbusClient : public ModbusLink {
             if (exchange()) {
                 rest(stop, settings_.poll);
             } else {
-                drop(modbus_strerror(errno));
+                drop(errno);
             }
         }
         close();
@@ -92,7 +92,7 @@ class ModbusClient : public ModbusLink {
             modbus_set_slave(modbus_, settings_.unit_id);
         }
         if (!modbus_ || modbus_connect(modbus_) != 0) {
-            drop(modbus_strerror(errno));
+            drop(errno);
             return false;
         }
         written_.reset();
@@ -106,11 +106,17 @@ class ModbusClient : public ModbusLink {
         modbus_ = nullptr;
     }
 
-    void drop(const char* why) {
+    // An exception is an answer, to something that this PLC does not do.
+    static bool is_exception(int error) { return error >= EMBXILFUN && error <= EMBXGTAR; }
+
+    void drop(int error) {
         // Told once an outage.
         if (!told_away_)
-            notices_.add(Text("the PLC at {}:{} does not answer: {}", settings_.address, settings_.port,
-                              std::string(why)));
+            notices_.add(is_exception(error)
+                             ? Text("the PLC at {}:{} refuses the words at read_address or write_address: {}",
+                                    settings_.address, settings_.port, std::string(modbus_strerror(error)))
+                             : Text("the PLC at {}:{} does not answer: {}", settings_.address, settings_.port,
+                                    std::string(modbus_strerror(error))));
         told_away_ = true;
         connected_ = false;
         station_.lost();
@@ -139,11 +145,12 @@ class ModbusClient : public ModbusLink {
         for (int k = 0; k < kLineRegions; ++k) {
             const int from = kRegionWords + k * kRegionStride;
             const auto* begin = words_.data() + from;
-            // A region that there never was is no words in the PLC's memory.
-            const bool was = written_
-                                 ? !std::equal(begin, begin + kRegionStride, written_->data() + from)
-                                 : std::any_of(begin, begin + kRegionStride, [](auto w) { return w != 0; });
-            if (was && !write_block(from, kRegionStride)) return false;
+            const bool is = std::any_of(begin, begin + kRegionStride, [](auto w) { return w != 0; });
+            if (written_ ? !std::equal(begin, begin + kRegionStride, written_->data() + from) : is) {
+                if (!write_block(from, kRegionStride)) return false;
+            } else if (!written_ && !write_block(from, 1) && !is_exception(errno)) {
+                return false;  // a PLC may hold that of an earlier station, or no words for it at all
+            }
         }
         if (!write_block(kStationWords, kStationWordsEnd - kStationWords)) return false;
         written_ = words_;

@@ -12,6 +12,8 @@
 #include <set>
 #include <utility>
 
+#include "devices/exchange/files.h"
+
 namespace seamwright {
 namespace {
 
@@ -93,6 +95,7 @@ Expected<void> write_workbook(const Workbook& workbook, const std::filesystem::p
                                     sheet.name, sheet.rows.size(), columns, kMostLines, kMostColumns),
                                path.string(), "choose a shorter time");
     }
+    SEAM_OK(check_replaceable(path));
     const auto failed = [&](const std::string& why) {
         return file_error(Text("the workbook cannot be written: {}", why), path.string(),
                           "choose a folder that can be written to");

@@ -33,7 +33,7 @@ constexpr std::uint32_t kTriggerMode = 0x400, kTriggerSource = 0x404, kTriggerSo
 // Bootstrap registers of GigE Vision.
 constexpr std::uint32_t kGevVersion = 0x0, kDeviceMode = 0x4, kVendorName = 0x48, kModelName = 0x68,
                         kVersion = 0x88, kInfo = 0xa8, kSerial = 0xd8, kCameraPrivilege = 0xa00,
-                        kCameraPacketSize = 0xd04;
+                        kCameraPacketSize = 0xd04, kCameraStreamPort = 0xd00;
 
 constexpr int kFreeAddresses = 50;  // tried
 
@@ -86,6 +86,12 @@ Expected<std::filesystem::path> write_description(const WireCameraSettings& sett
 
 }  // namespace
 
+namespace {
+std::uint16_t before_first(const WireCameraSettings& s) {
+    return static_cast<std::uint16_t>(std::max<int>(s.first_frame_id, 1) - 1);
+}
+}  // namespace
+
 struct WireCamera::Impl final : GigeMemory {
     WireCameraSettings settings;
     std::function<void()> software_trigger;
@@ -105,8 +111,9 @@ struct WireCamera::Impl final : GigeMemory {
     int late_ms = 0;
     std::atomic<double> lost_per_mille = 0;
     std::atomic<std::uint64_t> sent = 0, dropped = 0, triggers = 0;
-    std::uint16_t frame_id = 0;  // of the last frame sent; stream thread
-    std::mt19937 loss;           // stream thread
+    std::uint16_t frame_id = 0;      // of the last frame sent; stream thread
+    std::atomic<bool> anew = false;  // a stream was opened: its numbers begin
+    std::mt19937 loss;               // stream thread
     std::unique_ptr<GigeServer> server;
     std::jthread stream;  // last
 
@@ -151,7 +158,7 @@ struct WireCamera::Impl final : GigeMemory {
     void acquire_when_ready();
     void wake_up();
     void run(const std::stop_token& stop);
-    void send(const Waiting& frame, double loss_share);
+    void send(const Waiting& frame, double loss_share, std::uint32_t moved_px);
 };
 
 bool WireCamera::Impl::write(std::uint32_t address, std::span<const std::byte> from) {
@@ -162,6 +169,9 @@ bool WireCamera::Impl::write(std::uint32_t address, std::span<const std::byte> f
                                           from.data()))
             return false;
     }
+    if (address <= kCameraStreamPort && kCameraStreamPort < address + from.size() &&
+        (reg(kCameraStreamPort) & 0xFFFF) != 0)
+        anew = true;
     if (reg(kCameraPrivilege) == 0)  // nobody is in control any more
         set_reg(ARV_FAKE_CAMERA_REGISTER_ACQUISITION, 0);
     // Who draws may not have seen that one has ended before the next begins: that takes no trigger until it has been armed.
@@ -241,17 +251,19 @@ void WireCamera::Impl::run(const std::stop_token& stop) {
             ++dropped;
             continue;
         }
+        const std::uint32_t moved = fault == WireFault::moved ? 1 : 0;
         double share = lost_per_mille / 1000;
         if (fault == WireFault::damaged) share = std::max(share, 0.3);
         if (fault == WireFault::lost) share = 1;
-        if (fault == WireFault::damaged || fault == WireFault::lost) fault = WireFault::none;
+        if (fault != WireFault::late) fault = WireFault::none;
         lock.unlock();
-        send(frame, share);
+        send(frame, share, moved);
         ++sent;
     }
 }
 
-void WireCamera::Impl::send(const Waiting& frame, double loss_share) {
+void WireCamera::Impl::send(const Waiting& frame, double loss_share, std::uint32_t moved_px) {
+    if (anew.exchange(false)) frame_id = before_first(settings);
     frame_id = frame_id == 65535 ? 1 : static_cast<std::uint16_t>(frame_id + 1);
     std::uniform_real_distribution<double> random(0, 1);
     server->send({.id = frame_id,
@@ -260,7 +272,7 @@ void WireCamera::Impl::send(const Waiting& frame, double loss_share) {
                   .width = reg(ARV_FAKE_CAMERA_REGISTER_WIDTH),
                   .height = reg(ARV_FAKE_CAMERA_REGISTER_HEIGHT),
                   .x = reg(ARV_FAKE_CAMERA_REGISTER_X_OFFSET),
-                  .y = reg(ARV_FAKE_CAMERA_REGISTER_Y_OFFSET),
+                  .y = reg(ARV_FAKE_CAMERA_REGISTER_Y_OFFSET) + moved_px,
                   .payload = frame.payload},
                  [&] { return random(loss) < loss_share; });
 }
@@ -286,7 +298,7 @@ Expected<std::unique_ptr<WireCamera>> WireCamera::open(const WireCameraSettings&
     i->software_trigger = std::move(software_trigger);
     i->lost_per_mille = settings.lost_packets_per_mille;
     i->loss.seed(settings.loss_seed);
-    i->frame_id = static_cast<std::uint16_t>(std::max<int>(settings.first_frame_id, 1) - 1);
+    i->frame_id = before_first(settings);
     i->registers.reset(arv_fake_camera_new_full(settings.serial.c_str(), description.c_str()));
     std::error_code ignored;
     std::filesystem::remove(description, ignored);

@@ -35,7 +35,7 @@ struct WireCameraSettings {
     int packet_size = 7496;                           // bytes, IP header included
     double lost_packets_per_mille = 0;                // of stream packets
     std::uint32_t loss_seed = 1;                      // of which packets get lost
-    std::uint16_t first_frame_id = 1;                 // high ones show the wrap soon
+    std::uint16_t first_frame_id = 1;                 // of every stream; high ones show the wrap soon
     std::size_t queue = 8;                            // frames waiting for the wire; more are dropped
     // Range cameras: mm a step and at zero of A (x) and C (height); raw value of "no return".
     double a_scale_mm = 1, a_offset_mm = 0, c_scale_mm = 1, c_offset_mm = 0;
@@ -55,8 +55,8 @@ struct WireState {
     double frame_rate_hz = 0;  // 0: as fast as exposures allow
 };
 
-// What can go wrong with a frame on its way.
-enum class WireFault { none, damaged, lost, late };
+// What can go wrong with a frame on its way; moved: it shows the sensor from another row on.
+enum class WireFault { none, damaged, lost, late, moved };
 
 struct WireCounters {
     std::uint64_t sent = 0, dropped = 0, software_triggers = 0;

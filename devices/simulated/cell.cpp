@@ -58,6 +58,17 @@ Expected<std::shared_ptr<SimulatedCell>> SimulatedCell::open(const nlohmann::jso
     return open(parsed);
 }
 
+Expected<Pose> simulated_home(const nlohmann::json& settings) {
+    SEAM_TRY(const auto cell, SimulatedCell::open(settings));
+    const CellSettings& s = cell->settings();
+    if (s.scene != Scene::part) return s.base_from_target * s.flange_from_sensor.inverse();
+    if (s.mesh.empty()) return cell->flange_for(default_door_spots().front().workobject_from_sensor);
+    const Eigen::AlignedBox3d box = cell->part_mesh().box();
+    Eigen::Vector3d above = box.center();
+    above.z() = box.max().z();
+    return cell->flange_for(make_pose(Eigen::Matrix3d::Identity(), above));
+}
+
 PartState SimulatedCell::part() const {
     const std::lock_guard lock(mutex_);
     return part_;

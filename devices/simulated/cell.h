@@ -189,6 +189,10 @@ class SimulatedCell {
     RobotMode mode_;
 };
 
+// Where the flange of such a cell's robot stands before anything is taught: the sensor looks at the part, or at the target
+// that stands there.
+Expected<Pose> simulated_home(const nlohmann::json& settings);
+
 // Devices on a cell that is already there.
 std::unique_ptr<ProfileSource> make_simulated_sensor(std::shared_ptr<SimulatedCell> cell);
 std::unique_ptr<RobotLink> make_simulated_robot(std::shared_ptr<SimulatedCell> cell);

@@ -200,7 +200,9 @@ Expected<ProjectFile> ProjectFile::create(const fs::path& name, const Project& p
         return transaction.commit();
     };
     SEAM_OK(finish_new(work(), made, path, replace));
-    return open(name);
+    SEAM_TRY(auto file, open(name));
+    SEAM_OK(file.impl_->see_project());
+    return file;
 }
 
 Expected<void> ProjectFile::copy_to(const fs::path& name) const {
@@ -270,13 +272,16 @@ Expected<Project> ProjectFile::load() const {
     // One read transaction: another process's save is seen whole or not at all.
     SEAM_OK(impl_->db.execute("BEGIN"));
     auto project = load_rows_of(impl_->db);
+    const auto saw = project && !impl_->seen ? impl_->see_project() : Expected<void>();
     (void)impl_->db.execute("ROLLBACK");
+    if (!saw) return tl::unexpected(saw.error());
     return project;
 }
 
 Expected<void> ProjectFile::save(const Project& project) {
     SEAM_TRY(auto transaction, Transaction::begin(impl_->db));
-    SEAM_TRY(const auto changes, save_rows_of(impl_->db, project));
+    SEAM_TRY(const auto theirs, rows_of_others(project));
+    SEAM_TRY(const auto changes, save_rows_of(impl_->db, project, theirs));
     for (const RowChange& change : changes)
         SEAM_OK(may(change.table == "drift_watch" ? Deed::override
                     : change.table == "regions" || change.table == "requirements" || change.table == "elastic"
@@ -284,6 +289,7 @@ Expected<void> ProjectFile::save(const Project& project) {
                         : Deed::teach));
     SEAM_OK(chain_changes(impl_->db, impl_->name(), changes));
     SEAM_OK(transaction.commit());
+    SEAM_OK(see_saved(changes));
     checkpoint();
     return {};
 }

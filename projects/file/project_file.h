@@ -46,7 +46,9 @@
 
 namespace seamwright {
 
-// Of a sensor, robot, calibration, spot, region or panel job, in bytes of UTF-8: a robot's text (RAPID: 80)
+struct RowChange;  // project_file_detail.h
+
+// Of a sensor, robot, calibration, spot, region or panel job, in signs (id_length.h): a robot's text (RAPID: 80)
 // and the name of a file that is made of it hold so much and some words more.
 inline constexpr std::size_t kLongestId = 64;
 
@@ -112,6 +114,13 @@ struct StoredEvent {
     std::string utc, kind, subject, text;
 };
 
+// A row of the project that another program, or another connection of this one, has changed.
+struct EditOfOthers {
+    std::string table, id;  // "regions", "R1"
+    std::string person;     // who made the last edit; empty: nobody was signed in
+};
+Text said_of(const EditOfOthers& edit);
+
 // Somebody who gave his password: other connections to the same file act for him with it (ProjectFile::act_for).
 class SignedIn {
   public:
@@ -156,7 +165,14 @@ class ProjectFile {
     Expected<Project> load() const;
     // Only rows that changed are written. Refuses (input) two entities of one id, empty ids and new ones of
     // more than kLongestId signs, and what check_part_types() does.
+    // What other programs have changed since the first load() (or create()) of this ProjectFile is never undone: a row that
+    // `project` holds as it was then stays as they left it, and one that both have changed is refused (input), with nothing
+    // written.
     Expected<void> save(const Project& project);
+    // Rows that others have changed since then; none where it was never loaded. Cheap where nothing was edited.
+    Expected<std::vector<EditOfOthers>> edits_of_others() const;
+    // load(), from which on others' edits count.
+    Expected<Project> load_anew();
 
     // A whole run. Returns its number; events of the record get it too.
     Expected<std::int64_t> append_run(const RunRecord& run, const Project& setup);
@@ -250,6 +266,8 @@ class ProjectFile {
     std::vector<Error> check() const;
 
   private:
+    Expected<std::set<std::string>> rows_of_others(const Project& project);
+    Expected<void> see_saved(const std::vector<RowChange>& changes);
     Expected<std::int64_t> setup_id(const RunSetup& setup);
     Expected<std::int64_t> insert_run(const RunRecord& run, const RunSetup& setup);
     Expected<void> chain_run(std::int64_t number);

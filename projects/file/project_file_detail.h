@@ -5,9 +5,12 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <array>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -92,7 +95,17 @@ struct RowChange {
     bool gone = false;
     std::string note;  // what of its body
 };
-Expected<std::vector<RowChange>> save_rows_of(Database& db, const Project& project);
+// The tables of the project itself.
+inline constexpr std::array<const char*, 15> kProjectTables{
+    "project",    "requirements", "part",       "sensors", "robots",      "calibrations", "spots", "regions",
+    "panel_jobs", "line",         "part_types", "elastic", "drift_watch", "fixture",      "fleet"};
+// What the chain calls a row of them.
+inline std::string subject_of(std::string_view table, std::string_view id) {
+    return fmt::format("{} {}", table, id);
+}
+// Rows whose subject is `kept` stay as they are.
+Expected<std::vector<RowChange>> save_rows_of(Database& db, const Project& project,
+                                              const std::set<std::string>& kept = {});
 Expected<void> chain_changes(Database& db, const std::string& person, const std::vector<RowChange>& changes);
 Expected<Project> load_rows_of(Database& db);
 
@@ -105,6 +118,13 @@ Expected<void> insert_captures(Database& db, std::span<const Capture> all, std::
                                StoredMeasurements& stored);
 Expected<void> load_captures(Database& db, RunRecord& run);
 
+// The project's rows as this connection loaded or saved them.
+struct SeenProject {
+    std::map<std::string, std::int64_t> rows;  // checksums by subject
+    std::int64_t looked = 0;                   // the chain's entry up to which was looked for edits
+    bool edited = false;                       // there is one that is not this connection's
+};
+
 struct ProjectFile::Impl {
     std::filesystem::path path;
     mutable Database db;
@@ -113,6 +133,9 @@ struct ProjectFile::Impl {
     // The last edit and the setup that a push was found to be as saved with.
     std::int64_t pushed_edit = -1;
     Digest pushed_setup = {};
+    mutable std::optional<SeenProject> seen = {};  // absent: the project was not loaded
+    Expected<void> see_project() const;
+    Expected<bool> may_be_edited() const;
     std::string name() const { return person ? person->name : std::string(); }
     Impl(std::filesystem::path p, Database d) : path(std::move(p)), db(std::move(d)) {}
 };

@@ -309,6 +309,7 @@ void judge_correction(const GateRequest& request, Reasons& reasons) {
     reasons.refuse_unless(request.nozzle_sigma_mm >= 0 && std::isfinite(request.nozzle_sigma_mm),
                           "the sigma of the nozzle is not known");
     reasons.refuse_unless(request.drift_trouble.empty(), "{}", request.drift_trouble);
+    reasons.refuse_unless(request.project_trouble.empty(), "{}", request.project_trouble);
     reasons.refuse_unless(request.nozzle_trouble.empty(), "{}", request.nozzle_trouble);
     if (request.nozzle_sigma_mm > 0) sigma_mm = std::hypot(sigma_mm, request.nozzle_sigma_mm);
     const double turn_sigma = deg_from_rad(worst_sigma(correction.covariance.bottomRightCorner<3, 3>()));

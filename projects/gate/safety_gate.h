@@ -80,6 +80,8 @@ struct GateRequest {
     std::vector<Region> frame_of_other_types = {};
     Text drift_trouble =
         {};  // why the drift watch stops production: a step, a drift beyond what may be compensated
+    Text project_trouble =
+        {};  // what of the project was changed since it was loaded: what is judged with is old
 };
 
 // Limits beyond these are none.

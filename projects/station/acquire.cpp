@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "devices/host_time.h"
 #include "devices/silence.h"
 #include "projects/measure/measure.h"
 #include "projects/station/spot_light.h"
@@ -13,6 +14,14 @@ namespace seamwright {
 namespace {
 
 constexpr double kJoggedMm = 0.5, kJoggedDeg = 0.1;
+// What a frame may come later than the latest of the run; and what it takes where none came after its trigger.
+constexpr std::chrono::milliseconds kLaterStill{100}, kNoLatency{500};
+
+std::int64_t median(std::vector<std::int64_t> of) {
+    const auto middle = of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2);
+    std::nth_element(of.begin(), middle, of.end());
+    return *middle;
+}
 
 }  // namespace
 
@@ -122,20 +131,41 @@ Expected<FramePtr> TriggeredFrames::in_order(const TriggerEvent& trigger, std::c
         lost->spot_id = trigger.spot_id;
         return lost;
     }
+    last_trigger_ns_ = trigger.host_time_ns;
     const auto apart = std::chrono::nanoseconds(frame->host_time_ns - trigger.host_time_ns);
-    if (std::chrono::abs(apart) > kPairingWindow)
+    if (is_far(*frame, trigger))
         return device_error(Text("frame {} came {:.1f} s {} the trigger of spot {}", frame->sequence,
                                  std::abs(std::chrono::duration<double>(apart).count()),
                                  apart.count() < 0 ? "before" : "after", trigger.spot_id),
                             Text("sensor {}", setup_.id), "check the trigger line between robot and sensor");
+    if (frame->status == FrameStatus::ok && frame->device_time_ns != 0) {
+        device_after_ns_.push_back(frame->device_time_ns - trigger.host_time_ns);
+        host_after_ns_.push_back(apart.count());
+    }
+    longest_ns_ = std::max(longest_ns_, apart.count());
     return frame;
+}
+
+bool TriggeredFrames::is_far(const Frame& frame, const TriggerEvent& trigger) const {
+    using std::chrono::nanoseconds;
+    if (frame.host_time_ns == 0) return false;  // nothing came of it
+    const std::int64_t host = frame.host_time_ns - trigger.host_time_ns;
+    if (frame.status != FrameStatus::ok || frame.device_time_ns == 0 || device_after_ns_.empty())
+        return std::chrono::abs(nanoseconds(host)) > kPairingWindow;
+    const std::int64_t device = frame.device_time_ns - trigger.host_time_ns;
+    return std::chrono::abs(nanoseconds(host - median(host_after_ns_))) > kPairingDrift &&
+           std::chrono::abs(nanoseconds(device - median(device_after_ns_))) > kPairingDrift;
 }
 
 Expected<void> TriggeredFrames::finish() {
     if (!hardware_triggered(setup_)) return {};
     bool more = early_ != nullptr;
+    const std::int64_t latency = longest_ns_ > 0 ? longest_ns_ : std::chrono::nanoseconds(kNoLatency).count();
+    const std::int64_t until = last_trigger_ns_ + latency + std::chrono::nanoseconds(kLaterStill).count();
     while (!more) {
-        const auto left = sensor_.wait_next(std::chrono::milliseconds(0));
+        const auto rest = std::chrono::ceil<std::chrono::milliseconds>(
+            std::chrono::nanoseconds(std::max<std::int64_t>(until - host_now_ns(), 0)));
+        const auto left = sensor_.wait_next(last_trigger_ns_ ? rest : std::chrono::milliseconds(0));
         if (!left) break;
         more = !is_over(**left);
     }
@@ -143,6 +173,19 @@ Expected<void> TriggeredFrames::finish() {
         return device_error("the sensor exposed more often than the robot fired",
                             Text("sensor {}", setup_.id), "check the trigger line between robot and sensor");
     return {};
+}
+
+Expected<void> fired_near(const TriggerEvent& trigger, const Spot& spot) {
+    if (!trigger.base_from_flange) return {};
+    const double off_mm = distance_mm(*trigger.base_from_flange, spot.base_from_flange);
+    const double off_deg = deg_from_rad(angle_rad(*trigger.base_from_flange, spot.base_from_flange));
+    if (off_mm <= kFarFromSpotMm && off_deg <= kFarFromSpotDeg) return {};
+    return device_error(
+        Text("it fired for spot {} at a flange pose {:.0f} mm and {:.0f} deg off the taught one", spot.id,
+             off_mm, off_deg),
+        Text("robot {}", spot.robot_id),
+        "compare the program on the controller with the project, and the pose that it sends with "
+        "the robot's display");
 }
 
 Expected<Pose> stand_at(RobotLink& robot, const std::string& spot_id, const Pose& base_from_flange) {

@@ -44,9 +44,11 @@ Expected<TriggerEvent> next_trigger(RobotLink& robot, std::chrono::milliseconds 
 // hold some of before) are dropped and told. A sensor wired to the robot (setting "hardware_trigger") knows
 // only the order: the k-th trigger has the k-th frame, by the sequence number, so that a frame lost on the
 // way leaves its own spot without measurement and not all the later ones with the wrong one. What the numbers
-// cannot tell (the camera missed a trigger, or exposed without one) the times and the count do: a frame that
-// came kPairingWindow before or after its trigger, or frames left over at the end, make the run fail.
-inline constexpr std::chrono::milliseconds kPairingWindow{1000};
+// cannot tell (the camera missed a trigger, or exposed without one) the times and the count do: a first frame that came
+// kPairingWindow before or after its trigger, a later one whose time after its trigger is kPairingDrift off the median
+// of those before, by the sensor's clock and by ours (arrivals are late where a machine is busy; without a clock of the
+// sensor's: kPairingWindow again), or a frame left over at the end, make the run fail.
+inline constexpr std::chrono::milliseconds kPairingWindow{1000}, kPairingDrift{400};
 class TriggeredFrames {
   public:
     // `sensor` and `setup` must outlive it.
@@ -56,12 +58,14 @@ class TriggeredFrames {
     Expected<FramePtr> at(const TriggerEvent& trigger, std::chrono::milliseconds timeout,
                           const std::stop_token& cancel,
                           const std::function<void(const Frame& dropped)>& dropped);
-    // After the last trigger: Error when the sensor has exposed more often than the robot fired.
+    // After the last trigger: Error when the sensor has exposed more often than the robot fired. Waits as long as the last
+    // trigger's own frame may still be on its way, had it been given an earlier one.
     Expected<void> finish();
 
   private:
     Expected<FramePtr> in_order(const TriggerEvent& trigger, std::chrono::milliseconds timeout,
                                 const std::stop_token& cancel);
+    bool is_far(const Frame& frame, const TriggerEvent& trigger) const;
     // A late or damaged frame that was told as lost when its turn was over; a sound one is never passed over.
     bool is_over(const Frame& frame) const {
         return frame.status != FrameStatus::ok && expected_ && frame.sequence < *expected_;
@@ -70,7 +74,15 @@ class TriggeredFrames {
     const SensorSetup& setup_;
     FramePtr early_;  // came already, belongs to a later trigger
     std::optional<std::uint64_t> expected_;
+    // Of sound frames: their time less that of their trigger. The clocks need not have the same beginning.
+    std::vector<std::int64_t> device_after_ns_, host_after_ns_;
+    std::int64_t last_trigger_ns_ = 0, longest_ns_ = 0;
 };
+
+// Whether the robot can have fired for this spot: far from where it was taught it stands elsewhere, or says what is not
+// so, whatever the part's place. Error (device). A robot that does not say where it stands is believed.
+inline constexpr double kFarFromSpotMm = 300, kFarFromSpotDeg = 30;
+Expected<void> fired_near(const TriggerEvent& trigger, const Spot& spot);
 
 // For teaching: goes to `base_from_flange`. A robot that the program cannot move is jogged there by hand, and
 // must stand there, within half a millimetre and a tenth of a degree. Returns where it says that it stands.

@@ -22,6 +22,8 @@
 namespace seamwright {
 namespace {
 
+constexpr double kSlowest_mm_s = 0.1;  // controllers take four decimals of m/s
+
 // What a finding makes unsafe.
 enum class Concern {
     setup,      // nothing by itself: the run says what it cannot do
@@ -169,8 +171,8 @@ void check_spot(const Project& project, const Spot& spot, Findings& findings) {
     findings.rigid(spot.base_from_flange, joined(where, "", ".base_from_flange"));
     for (std::size_t i = 0; i < spot.via.size(); ++i)
         findings.rigid(spot.via[i], fmt::format("{}.via[{}]", where, i));
-    findings.unless(positive(spot.speed_mm_s) && spot.speed_mm_s <= 5000, where,
-                    Text("the speed of {} mm/s is not plausible (0..5000)", spot.speed_mm_s));
+    findings.unless(spot.speed_mm_s >= kSlowest_mm_s && spot.speed_mm_s <= 5000, where,
+                    Text("the speed of {} mm/s is not plausible ({}..5000)", spot.speed_mm_s, kSlowest_mm_s));
     findings.unless(std::isfinite(spot.entry_mm) && spot.entry_mm >= 0 && std::isfinite(spot.exit_mm) &&
                         spot.exit_mm >= 0 && spot.entry_mm <= 1000 && spot.exit_mm <= 1000,
                     where, "entry and exit must be between 0 and 1000 mm");

@@ -4,6 +4,7 @@
 
 #include "projects/model/part_types.h"
 #include "projects/station/acquire.h"
+#include "projects/station/check.h"
 
 namespace seamwright {
 
@@ -22,6 +23,7 @@ Expected<ProgramRequest> program_request(const Project& whole, const RobotId& ro
     if (robot == robots.end())
         return input_error(Text("the project has no robot \"{}\"", robot_id.text()), project.name,
                            Text("its first is \"{}\"", robots.front().id));
+    SEAM_OK(none_of_motion(motion_findings(project, false)));
     ProgramRequest request;
     request.project = project.name;
     request.part_type = type;

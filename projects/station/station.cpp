@@ -96,6 +96,31 @@ void Station::use(const Project& project) {
     impl_->project = project;
 }
 
+Expected<std::vector<EditOfOthers>> measuring_edits(const ProjectFile& file) {
+    SEAM_TRY(auto edits, file.edits_of_others());
+    std::erase_if(edits, [](const EditOfOthers& edit) {
+        return edit.table == "line" || edit.table == "drift_watch" || edit.table == "fixture" ||
+               edit.table == "fleet";
+    });
+    return edits;
+}
+
+Expected<std::vector<EditOfOthers>> Station::follow_file() {
+    Impl& i = *impl_;
+    SEAM_TRY(auto edits, measuring_edits(i.file));
+    if (edits.empty()) return edits;
+    SEAM_TRY(auto project, i.file.load_anew());
+    const auto same = [](const auto& before, const auto& after) {
+        return std::ranges::equal(before, after, [](const auto& a, const auto& b) {
+            return a.id == b.id && a.driver == b.driver && a.settings == b.settings;
+        });
+    };
+    if (!same(i.project.sensors, project.sensors) || !same(i.project.robots, project.robots)) i.disconnect();
+    i.project = std::move(project);
+    if (i.connected) i.take_identities();
+    return edits;
+}
+
 Expected<void> Station::connect(const Patience& patience) {
     Impl& i = *impl_;
     i.disconnect();

@@ -58,6 +58,9 @@ struct RunOptions {
     std::function<bool(const RunRecord& judged)> confirm_push = {};
 };
 
+// ProjectFile::edits_of_others() that a run rests on: all but those of the line, the drift watch, the fixture and the fleet.
+Expected<std::vector<EditOfOthers>> measuring_edits(const ProjectFile& file);
+
 // One thread at a time.
 class Station {
   public:
@@ -72,6 +75,10 @@ class Station {
     ProjectFile& file();
     // Saves, then takes over. Devices stay as connected; connect() again after changing their settings.
     Expected<void> edit(const Project& project);
+    // Takes over what others have edited in the file since it was opened (measuring_edits), and says what. Where devices or their
+    // settings are among it the station is disconnected: connect() again. A part that was begun before such an edit is
+    // refused by the gate.
+    Expected<std::vector<EditOfOthers>> follow_file();
     // Takes over without saving, for an editor whose document is saved by its own command: runs keep the
     // setup they were made with in any case.
     void use(const Project& project);

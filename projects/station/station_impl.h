@@ -98,6 +98,7 @@ struct Station::Impl {
     Expected<void> watch_drift(Job& job);
     GateSpot gate_spot(const Job& job, const Spot& spot, std::map<std::string, RobotIdentity>& answered);
     void ask_robot(const Job& job, const std::string& robot_id, GateRequest& request);
+    Text project_trouble() const;
     GateRequest gate_request(const Job& job, const Region& region, const RegionRecord& record);
     std::vector<std::optional<GatePass>> judge(Job& job);
 

@@ -63,6 +63,13 @@ void Station::Impl::ask_robot(const Job& job, const std::string& robot_id, GateR
     }
 }
 
+// A limit, a calibration or a collision that somebody has entered meanwhile counts for this part, too.
+Text Station::Impl::project_trouble() const {
+    const auto edits = measuring_edits(file);
+    if (!edits) return edits.error().text();
+    return edits->empty() ? Text() : Text("{}: measure again", said_of(edits->front()));
+}
+
 GateRequest Station::Impl::gate_request(const Job& job, const Region& region, const RegionRecord& record) {
     GateRequest request;
     request.region = region;
@@ -89,6 +96,7 @@ GateRequest Station::Impl::gate_request(const Job& job, const Region& region, co
     }
     for (const PanelJob& other : job.project.panel_jobs) request.other_frames.push_back(other.frame_name);
     if (job.drift) request.drift_trouble = job.drift->trouble;
+    request.project_trouble = project_trouble();
     request.calibration_age_days = job.project.requirements.calibration_age_days;
     request.now_utc = utc_now();
     request.now_ns = host_now_ns();

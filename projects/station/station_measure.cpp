@@ -89,6 +89,7 @@ Expected<void> Station::Impl::measure_robot(Job& job, const std::string& robot_i
                 Text("the robot fired for spot \"{}\", which is {}", trigger.spot_id,
                      spot == spots.end() ? "not in the measuring program" : "measured already"),
                 Text("robot {}", robot_id), "compare the program on the controller with the project");
+        SEAM_OK(fired_near(trigger, **spot));
         SEAM_OK(measure_spot(job, **spot, trigger));
         SEAM_OK(next_of((*spot)->sensor_id, std::next(spot)));
         open.erase(trigger.spot_id);

@@ -52,6 +52,7 @@ std::string_view name_of(const WatchHappening& happening) {
         std::string_view operator()(const Missed&) const { return "missed"; }
         std::string_view operator()(const SpotDone&) const { return "spot"; }
         std::string_view operator()(const RunDone&) const { return "run"; }
+        std::string_view operator()(const ProjectNotice&) const { return "project"; }
         std::string_view operator()(const Stopped&) const { return "stopped"; }
     };
     return std::visit(Name{}, happening);
@@ -69,6 +70,7 @@ class Watch {
     Expected<WatchCounts> run() {
         while (!ended()) {
             alive();
+            SEAM_OK(follow_file());
             if (!station_.connected()) {
                 SEAM_TRY(auto connected, connect());
                 if (!connected) continue;
@@ -126,6 +128,16 @@ class Watch {
             {0, utc_now(), 0, EventKind::alarm, subject.english(), Text("lost: {}", error.text())});
         tell(WatchLevel::alarm, watched::Lost{subject.english(), error.code},
              Text("{} is lost: {}", subject, error.text()));
+    }
+
+    Expected<void> follow_file() {
+        SEAM_TRY(const auto edits, station_.follow_file());
+        for (const EditOfOthers& edit : edits) {
+            const Text text("{}: from now on it is measured with as it is in the file", said_of(edit));
+            (void)station_.file().append_event({0, utc_now(), 0, EventKind::note, "watch", text});
+            tell(WatchLevel::warning, watched::ProjectNotice{}, text);
+        }
+        return {};
     }
 
     // The first sensor that cannot be started, as the next part would start it, and what it says.

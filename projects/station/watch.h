@@ -57,12 +57,14 @@ struct RunDone {
     double seconds;
     DriftStanding drift = {};  // after this run
 };
+struct ProjectNotice {
+};  // the project was edited in the file; from now on it is measured with as it is there
 struct Stopped {};
 }  // namespace watched
-using WatchHappening =
-    std::variant<watched::Connected, watched::Lost, watched::Back, watched::RobotNotice, watched::LineNotice,
-                 watched::Start, watched::Missed, watched::SpotDone, watched::RunDone, watched::Stopped>;
-// connected | lost | back | robot | line | start | missed | spot | run | stopped
+using WatchHappening = std::variant<watched::Connected, watched::Lost, watched::Back, watched::RobotNotice,
+                                    watched::LineNotice, watched::Start, watched::Missed, watched::SpotDone,
+                                    watched::RunDone, watched::ProjectNotice, watched::Stopped>;
+// connected | lost | back | robot | line | start | missed | spot | run | project | stopped
 std::string_view name_of(const WatchHappening& happening);
 
 // One thing that happened, for a screen and a log that machines read.
@@ -118,6 +120,7 @@ struct WatchOptions {
     std::function<void()> alive;
 };
 
+// What others edit in the file counts from the next part on, see Station::follow_file().
 // Connects the station where it is not. Ends by `cancel` or after `parts`. Error: the file cannot be written,
 // or no robot of the project has a start signal; device failures are told and survived.
 Expected<WatchCounts> watch(Station& station, const WatchOptions& options);

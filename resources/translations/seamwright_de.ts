@@ -2743,6 +2743,10 @@
         <source>Go on</source>
         <translation>Fortsetzen</translation>
     </message>
+    <message>
+        <source>A sensor that delivers images needs this first: %1.</source>
+        <translation>Ein Sensor, der Bilder liefert, braucht zuerst: %1.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::CalibrationDesk</name>
@@ -4051,6 +4055,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <source>Flange: X %1  Y %2  Z %3 mm, A %4  B %5  C %6 degrees</source>
         <translation>Flansch: X %1  Y %2  Z %3 mm, A %4  B %5  C %6 Grad</translation>
     </message>
+    <message>
+        <source>The robot does not tell where it stands, and is not moved from here before it does: move it once at its own panel.</source>
+        <translation>Der Roboter sagt nicht, wo er steht, und wird vorher nicht von hier bewegt: Bewegen Sie ihn einmal an seinem eigenen Bediengerät.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::ListHabits</name>
@@ -4536,6 +4544,30 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>A push waits for your answer: go to Run</source>
         <translation>Eine Übertragung wartet auf Ihre Antwort: zum Lauf</translation>
+    </message>
+    <message>
+        <source>Answer above: push, or do not push</source>
+        <translation>Oben antworten: übertragen oder nicht übertragen</translation>
+    </message>
+    <message>
+        <source>A job is running</source>
+        <translation>Ein Auftrag läuft</translation>
+    </message>
+    <message>
+        <source>A push waits for your answer. When the project is closed, nothing is pushed.</source>
+        <translation>Eine Übertragung wartet auf Ihre Antwort. Wird das Projekt geschlossen, wird nichts übertragen.</translation>
+    </message>
+    <message>
+        <source>A job is running. When the project is closed, it is cancelled and what it has measured so far may be lost.</source>
+        <translation>Ein Auftrag läuft. Wird das Projekt geschlossen, wird er abgebrochen, und was er bis dahin gemessen hat, kann verloren gehen.</translation>
+    </message>
+    <message>
+        <source>Cancel the job and close</source>
+        <translation>Auftrag abbrechen und schließen</translation>
+    </message>
+    <message>
+        <source>Stay</source>
+        <translation>Bleiben</translation>
     </message>
 </context>
 <context>
@@ -5433,6 +5465,10 @@ ausgelassen</translation>
 </context>
 <context>
     <name>seamwright::RunPage</name>
+    <message>
+        <source>%1: nothing was pushed. Open the project again.</source>
+        <translation>%1: Nichts wurde übertragen. Das Projekt erneut öffnen.</translation>
+    </message>
     <message>
         <source>random %1</source>
         <translation>zufällig %1</translation>

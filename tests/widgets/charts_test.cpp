@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <QLabel>
 #include <QSignalSpy>
 #include <QTest>
 #include <cmath>
@@ -25,6 +26,29 @@ TEST(Capability, FollowsItsFormulae) {
     EXPECT_FALSE(one_sided.cp);
     EXPECT_NEAR(*one_sided.cpk, 1, 1e-12);
     EXPECT_FALSE(capability({2, 2, 2}, {0.0, 3.0}).cpk);
+}
+
+// Biases that cancel when they are put together, as many values as parts.
+TEST(Histogram, EverySeriesHasItsOwnMeanAndCount) {
+    Histogram chart;
+    chart.set_data("shift", "mm",
+                   {{"X", {-0.2, -0.1, -0.3}}, {"Y", {0.2, 0.1, std::nan("")}}, {"Z", {0, 0, 0}}},
+                   {-1.0, 1.0});
+    EXPECT_EQ(chart.shown(0).count, 3);
+    EXPECT_NEAR(chart.shown(0).mean, -0.2, 1e-12);
+    EXPECT_NEAR(chart.shown(0).standard_deviation, 0.1, 1e-12);
+    EXPECT_NEAR(*chart.shown(0).cpk, 0.8 / 0.3, 1e-9);
+    EXPECT_EQ(chart.shown(1).count, 2);
+    EXPECT_NEAR(chart.shown(1).mean, 0.15, 1e-12);
+    EXPECT_EQ(chart.shown(2).mean, 0);
+    EXPECT_EQ(chart.shown(3).count, 0);
+    const auto* words = chart.findChild<QLabel*>();
+    ASSERT_TRUE(words);
+    EXPECT_TRUE(words->text().contains("X   n 3   mean -0.200   s 0.100 mm")) << words->text().toStdString();
+    EXPECT_TRUE(words->text().contains("Y   n 2   mean 0.150"));
+    chart.set_data("one", "mm", std::vector<double>{1, 2, 3}, {});
+    EXPECT_EQ(chart.shown().count, 3);
+    EXPECT_TRUE(words->text().startsWith("one   n 3")) << words->text().toStdString();
 }
 
 TEST(TrendChart, ClickOpensThePartAndLimitsAreCounted) {

@@ -27,6 +27,23 @@ Profile wave(std::size_t n) {
 
 // Every accepted point lies on a stroke of its column and segment, and no stroke reaches beyond its
 // neighbours' extremes.
+// A plot that was squeezed to nothing comes back with the width it had, and so before anything was measured.
+TEST(ProfilePlot, ItsScaleOutlivesHavingNoRoom) {
+    ProfilePlot plot;
+    plot.setMinimumSize(1, 1);
+    plot.resize(600, 300);
+    plot.show();
+    ASSERT_TRUE(QTest::qWaitForWindowExposed(&plot));
+    const double before = plot.view().width();
+    for (const QSize size : {QSize(1, 200), QSize(600, 300), QSize(30, 30), QSize(1, 1), QSize(600, 300)}) {
+        plot.resize(size);
+        QTest::qWait(40);
+    }
+    EXPECT_LT(plot.view().width(), 3 * before);
+    EXPECT_GT(plot.view().width(), before / 3);
+    EXPECT_LT(plot.view().height(), 3 * before);
+}
+
 TEST(Decimate, StrokesHoldExactlyThePoints) {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> height(-8, 8);

@@ -10,72 +10,117 @@
 
 namespace seamwright {
 
+namespace {
+
+QString in_words(double v) {
+    return QString::number(v, 'f', 3);
+}
+
+std::vector<double> finite_sorted(const std::vector<double>& values) {
+    std::vector<double> sorted;
+    for (const double v : values)
+        if (std::isfinite(v)) sorted.push_back(v);
+    std::sort(sorted.begin(), sorted.end());
+    return sorted;
+}
+
+// Freedman-Diaconis; 0: all are equal, or fewer than two.
+double class_width(const std::vector<double>& sorted) {
+    const std::size_t n = sorted.size();
+    if (n < 2) return 0;
+    const double width = 2 * (sorted[n * 3 / 4] - sorted[n / 4]) / std::cbrt(static_cast<double>(n));
+    return width > 0 ? width : (sorted.back() - sorted.front()) / 5;
+}
+
+}  // namespace
+
 struct Histogram::Impl {
     bool of_process = true;
     PlotCanvas* canvas = nullptr;
     QLabel* title = nullptr;
     QString name, unit;
-    std::vector<double> values;
+    std::vector<TrendSeries> series;
     TrendLimits limits;
-    Capability shown;
+    std::vector<Capability> shown;  // one a series
 
     void rebuild();
+    QString words(const Capability& of) const;
 };
+
+QString Histogram::Impl::words(const Capability& of) const {
+    if (of.count < 2) return Histogram::tr("fewer than two values");
+    QString text = Histogram::tr("n %1   mean %2   s %3 %4")
+                       .arg(of.count)
+                       .arg(in_words(of.mean), in_words(of.standard_deviation), unit);
+    if (of_process && of.cp) text += "   " + Histogram::tr("Cp %1").arg(*of.cp, 0, 'f', 2);
+    if (of_process && of.cpk) text += "   " + Histogram::tr("Cpk %1").arg(*of.cpk, 0, 'f', 2);
+    if (of_process && of.cpk && of.count < 50) text += " " + Histogram::tr("(few values)");
+    return text;
+}
 
 void Histogram::Impl::rebuild() {
     const QPalette palette = canvas->parentWidget()->palette();
     canvas->clearPlottables();
     canvas->clearItems();
-    std::vector<double> sorted;
-    for (const double v : values)
-        if (std::isfinite(v)) sorted.push_back(v);
-    std::sort(sorted.begin(), sorted.end());
-    shown = capability(values, limits);
-    const auto number = [](double v) { return QString::number(v, 'f', 3); };
-    QString text = name;
-    if (sorted.size() < 2) {
-        title->setText(text + "\n" + Histogram::tr("fewer than two values"));
+    shown.clear();
+    std::vector<std::vector<double>> sorted;
+    double width = 0, first = 0, last = 0;
+    bool any = false;
+    QStringList lines;
+    for (const TrendSeries& s : series) {
+        shown.push_back(capability(s.values, limits));
+        lines << (s.name.isEmpty() ? words(shown.back()) : s.name + "   " + words(shown.back()));
+        sorted.push_back(finite_sorted(s.values));
+        const std::vector<double>& own = sorted.back();
+        if (own.size() < 2) continue;
+        const double fine = class_width(own);
+        if (fine > 0 && (width == 0 || fine < width)) width = fine;
+        first = any ? std::min(first, own.front()) : own.front();
+        last = any ? std::max(last, own.back()) : own.back();
+        any = true;
+    }
+    if (!any) {
+        title->setText(name + "\n" + Histogram::tr("fewer than two values"));
         canvas->request_replot();
         return;
     }
-    text += "   " + Histogram::tr("n %1   mean %2   s %3 %4")
-                        .arg(shown.count)
-                        .arg(number(shown.mean), number(shown.standard_deviation), unit);
-    if (of_process && shown.cp) text += "   " + Histogram::tr("Cp %1").arg(*shown.cp, 0, 'f', 2);
-    if (of_process && shown.cpk) text += "   " + Histogram::tr("Cpk %1").arg(*shown.cpk, 0, 'f', 2);
-    if (of_process && shown.cpk && shown.count < 50) text += " " + Histogram::tr("(few values)");
-    title->setText(text);
+    title->setText(series.size() == 1 ? name + "   " + lines.front() : name + "\n" + lines.join('\n'));
 
-    const std::size_t n = sorted.size();
-    const double spread = sorted[n * 3 / 4] - sorted[n / 4], whole = sorted.back() - sorted.front();
-    double width = 2 * spread / std::cbrt(static_cast<double>(n));
-    if (!(width > 0)) width = whole > 0 ? whole / 5 : 1;
-    const int classes = std::clamp(static_cast<int>(std::ceil(whole / width)), 5, 60);
+    // The series share the classes, and their bars a class.
+    const double whole = last - first;
+    const int classes = width > 0 ? std::clamp(static_cast<int>(std::ceil(whole / width)), 5, 60) : 5;
     width = whole > 0 ? whole / classes : 1;
-    QVector<double> keys(classes), counts(classes, 0.0);
-    for (int i = 0; i < classes; ++i) keys[i] = sorted.front() + (i + 0.5) * width;
-    for (const double v : sorted)
-        counts[std::clamp(static_cast<int>((v - sorted.front()) / width), 0, classes - 1)] += 1;
-    auto* bars = new QCPBars(canvas->xAxis, canvas->yAxis);
-    bars->setWidthType(QCPBars::wtPlotCoords);
-    bars->setWidth(width * 0.94);
-    bars->setPen(Qt::NoPen);
-    bars->setBrush(style::segment(0, palette));
-    bars->setData(keys, counts, true);
-    const double highest = *std::max_element(counts.begin(), counts.end());
-
-    // The normal curve that Cp and Cpk assume, for the eye to judge.
-    double low = sorted.front() - width, high = sorted.back() + width;
+    const auto beside = static_cast<double>(series.size());
+    double low = first - width, high = last + width, highest = 0;
     if (limits.lower) low = std::min(low, *limits.lower - width);
     if (limits.upper) high = std::max(high, *limits.upper + width);
-    if (shown.standard_deviation > 0) {
+    for (std::size_t k = 0; k < series.size(); ++k) {
+        const std::vector<double>& own = sorted[k];
+        if (own.size() < 2) continue;
+        const QColor colour = style::segment(static_cast<int>(k), palette);
+        QVector<double> keys(classes), counts(classes, 0.0);
+        for (int i = 0; i < classes; ++i)
+            keys[i] = first + (i + (static_cast<double>(k) + 0.5) / beside) * width;
+        for (const double v : own)
+            counts[std::clamp(static_cast<int>((v - first) / width), 0, classes - 1)] += 1;
+        auto* bars = new QCPBars(canvas->xAxis, canvas->yAxis);
+        bars->setWidthType(QCPBars::wtPlotCoords);
+        bars->setWidth(width * 0.94 / beside);
+        bars->setPen(Qt::NoPen);
+        bars->setBrush(colour);
+        bars->setData(keys, counts, true);
+        highest = std::max(highest, *std::max_element(counts.begin(), counts.end()));
+
+        // The normal curve that Cp and Cpk assume, for the eye to judge.
+        const Capability& of = shown[k];
+        if (!(of.standard_deviation > 0)) continue;
         auto* curve = canvas->addGraph();
-        curve->setPen(QPen(style::quiet_text(palette), 1.5));
+        curve->setPen(QPen(series.size() == 1 ? style::quiet_text(palette) : colour, 1.5));
         constexpr double kSqrt2Pi = 2.5066282746310002;
         for (int i = 0; i <= 160; ++i) {
             const double x = low + (high - low) * i / 160;
-            const double u = (x - shown.mean) / shown.standard_deviation;
-            curve->addData(x, static_cast<double>(n) * width / (shown.standard_deviation * kSqrt2Pi) *
+            const double u = (x - of.mean) / of.standard_deviation;
+            curve->addData(x, static_cast<double>(own.size()) * width / (of.standard_deviation * kSqrt2Pi) *
                                   std::exp(-0.5 * u * u));
         }
     }
@@ -116,16 +161,22 @@ Histogram::~Histogram() = default;
 
 void Histogram::set_data(const QString& title, const QString& unit, const std::vector<double>& values,
                          const TrendLimits& limits, bool of_process) {
+    set_data(title, unit, std::vector<TrendSeries>{{{}, values}}, limits, of_process);
+}
+
+void Histogram::set_data(const QString& title, const QString& unit, const std::vector<TrendSeries>& series,
+                         const TrendLimits& limits, bool of_process) {
     impl_->of_process = of_process;
     impl_->name = title;
     impl_->unit = unit;
-    impl_->values = values;
+    impl_->series = series;
     impl_->limits = limits;
     impl_->rebuild();
 }
 
-const Capability& Histogram::shown() const {
-    return impl_->shown;
+const Capability& Histogram::shown(std::size_t series) const {
+    static const Capability none;
+    return series < impl_->shown.size() ? impl_->shown[series] : none;
 }
 
 void Histogram::changeEvent(QEvent* event) {

@@ -1,5 +1,5 @@
 #pragma once
-// Distribution of one quantity with its limits and process capability.
+// Distribution of one quantity, or of several of one unit beside each other, with limits and process capability.
 
 #include <QWidget>
 #include <memory>
@@ -32,7 +32,11 @@ class Histogram : public QWidget {
     // Cp nor Cpk is said.
     void set_data(const QString& title, const QString& unit, const std::vector<double>& values,
                   const TrendLimits& limits, bool of_process = true);
-    const Capability& shown() const;
+    // Of each series its own, in its colour of the trend chart: what is put together would let their means cancel and count
+    // each part several times.
+    void set_data(const QString& title, const QString& unit, const std::vector<TrendSeries>& series,
+                  const TrendLimits& limits, bool of_process = true);
+    const Capability& shown(std::size_t series = 0) const;
     QSize sizeHint() const override { return {360, 220}; }
     QSize minimumSizeHint() const override { return {200, 140}; }
 

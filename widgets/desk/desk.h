@@ -52,6 +52,8 @@ class Desk : public QObject {
     void restore();
     void forget_recovery();
     Expected<void> save();
+    // What another program has edited in the file that a run rests on; empty: nothing.
+    QString edited_elsewhere() const;
     Expected<void> save_as(const std::filesystem::path& path);  // with runs and events
     void close();                                               // unsaved edits are dropped
 

@@ -130,6 +130,13 @@ Expected<void> Desk::save() {
     return {};
 }
 
+QString Desk::edited_elsewhere() const {
+    if (!file_) return {};
+    const auto edits = measuring_edits(*file_);
+    if (!edits) return shown_error(edits.error());
+    return edits->empty() ? QString() : shown(said_of(edits->front()));
+}
+
 Expected<void> Desk::save_as(const std::filesystem::path& path) {
     if (!file_) return usage_error("no project is open", {}, "open or make one");
     if (path == file_->path()) return save();

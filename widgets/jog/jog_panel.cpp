@@ -222,6 +222,10 @@ void JogPanel::refresh() {
         place_->setText(tr("Flange: X %1  Y %2  Z %3 mm, A %4  B %5  C %6 degrees")
                             .arg(number(p.x(), 2), number(p.y(), 2), number(p.z(), 2), number(abc.a_deg, 3),
                                  number(abc.b_deg, 3), number(abc.c_deg, 3)));
+    } else {
+        place_->setText(
+            tr("The robot does not tell where it stands, and is not moved from here before it does: move it "
+               "once at its own panel."));
     }
 }
 

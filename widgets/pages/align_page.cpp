@@ -86,6 +86,10 @@ bool AlignPage::here() const {
     return pass_ && spot() && pass_->spot.id == spot()->id && measured_alike(pass_->spot, *spot());
 }
 
+QWidget* AlignPage::due() {
+    return spot_head_->findChild<QWidget*>("head_deed");
+}
+
 void AlignPage::refresh() {
     tree_->refresh();
     spot_head_->refresh();

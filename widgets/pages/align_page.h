@@ -16,6 +16,7 @@ class AlignPage : public StepPage {
 
   protected:
     void refresh() override;
+    QWidget* due() override;
     void entered() override;
 
   private:

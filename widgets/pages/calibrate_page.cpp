@@ -22,6 +22,25 @@ QString age_of(const std::string& utc) {
                      : CalibratePage::tr("%n day(s) old", "", static_cast<int>(days));
 }
 
+bool measures_through_camera(CaptureKind kind) {
+    switch (kind) {
+        case CaptureKind::sphere_profile:
+        case CaptureKind::stripe_line:
+        case CaptureKind::board_pose:
+        case CaptureKind::apex:
+        case CaptureKind::board_points:
+        case CaptureKind::board_chain:
+        case CaptureKind::board_sights:
+            return true;
+        case CaptureKind::board_and_stripe:
+        case CaptureKind::board_view:
+        case CaptureKind::touch:
+        case CaptureKind::files:
+            break;
+    }
+    return false;
+}
+
 }  // namespace
 
 CalibratePage::CalibratePage(Desk& desk, const Views& views)
@@ -44,13 +63,27 @@ CalibratePage::CalibratePage(Desk& desk, const Views& views)
     add_field(*all, tr("Sensor"), sensor_, tr("The sensor to calibrate"));
     add_field(*all, tr("Robot"), robot_, tr("The robot that carries it, or shows it the target"));
     connect(sensor_, &QComboBox::currentIndexChanged, this, [this] { refresh(); });
-    for (const CalibrationMethod& method : calibration_methods()) {
+    // The camera and its laser plane first: the others measure through them.
+    std::vector<CalibrationMethod> methods = calibration_methods();
+    std::stable_partition(methods.begin(), methods.end(), [](const CalibrationMethod& m) {
+        return m.guided && m.capture == CaptureKind::board_and_stripe;
+    });
+    for (const CalibrationMethod& method : methods) {
         if (!method.guided) continue;
         all->addWidget(make_heading(shown(method.title)));
         all->addWidget(make_text(shown(method.why)));
+        if (measures_through_camera(method.capture)) {
+            auto* before = make_text(
+                tr("A sensor that delivers images needs this first: %1.").arg(shown(methods.front().title)));
+            before->setObjectName("before_" + QString::fromStdString(method.id));
+            set_verdict(*before, before->text(), Tone::attention);
+            before_.push_back(before);
+            all->addWidget(before);
+        }
         auto* button = make_button("begin_" + QString::fromStdString(method.id), "play", tr("Begin"),
                                    shown(method.title), [this, name = method.id] { begin(name); });
         begins_[method.id] = button;
+        if (!first_begin_) first_begin_ = button;
         all->addLayout(make_row({button}));
     }
     simulated_ = new QWidget;
@@ -126,6 +159,11 @@ void CalibratePage::take_simulated() {
     }
 }
 
+QWidget* CalibratePage::due() {
+    if (guided_->isVisible()) return head()->findChild<QWidget*>("calibration_lead");
+    return simulated_->isVisible() ? findChild<QWidget*>("simulated_truth") : first_begin_;
+}
+
 void CalibratePage::refresh() {
     const Project& p = desk_.project();
     simulated_->setVisible(desk_.station().connected &&
@@ -154,6 +192,8 @@ void CalibratePage::refresh() {
                             ? tr("Go on")
                             : tr("Begin"));
     }
+    const Calibration* in_use = calibration_of(p, sensor_->currentText().toStdString());
+    for (QLabel* before : before_) before->setVisible(!in_use || !in_use->model);
     std::string key;
     for (const Calibration& c : p.calibrations)
         key += c.id + std::string(name_of(c.verdict)) + c.created_utc + "\n";

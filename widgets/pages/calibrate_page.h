@@ -20,6 +20,7 @@ class CalibratePage : public StepPage {
 
   protected:
     void refresh() override;
+    QWidget* due() override;
     void entered() override;
 
   private:
@@ -33,6 +34,8 @@ class CalibratePage : public StepPage {
     std::map<std::string, QPushButton*> begins_;
     QVBoxLayout* cards_;
     QWidget* simulated_ = nullptr;
+    QWidget* first_begin_ = nullptr;
+    std::vector<QLabel*> before_;  // of the methods that need the camera: what comes before them
     std::string shown_;
 };
 

@@ -23,6 +23,7 @@ namespace seamwright {
 namespace {
 constexpr int kSensorRole = Qt::UserRole;
 constexpr const char* kCameraDriver = "genicam";
+constexpr int kName_px = 130;  // of a long name, beside which what the device does has its room
 constexpr std::array kModes{RobotMode::unknown, RobotMode::manual_reduced, RobotMode::manual_full,
                             RobotMode::automatic, RobotMode::external};
 }  // namespace
@@ -42,6 +43,7 @@ CellPage::CellPage(Desk& desk, const Views& views)
     devices_ = make_table("devices", {tr("Name"), tr("Kind"), tr("Driver"), tr("State")},
                           tr("Sensors and robots of the project"));
     devices_->setMinimumHeight(150);
+    elide_first_column(*devices_, kName_px);
     connect(devices_, &QTableWidget::currentCellChanged, this, [this] {
         if (sensor_chosen()) desk_.selection().select_sensor(chosen());
         show_device();
@@ -194,6 +196,13 @@ bool CellPage::sensor_chosen() const {
 std::string CellPage::chosen() const {
     const auto* item = devices_->currentRow() < 0 ? nullptr : devices_->item(devices_->currentRow(), 0);
     return item ? item->text().toStdString() : std::string();
+}
+
+QWidget* CellPage::due() {
+    const Project& p = desk_.project();
+    if (p.sensors.empty()) return findChild<QWidget*>("add_sensor");
+    if (p.robots.empty()) return findChild<QWidget*>("add_robot");
+    return desk_.station().connected ? static_cast<QWidget*>(devices_) : connect_;
 }
 
 void CellPage::refresh() {

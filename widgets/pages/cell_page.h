@@ -21,6 +21,7 @@ class CellPage : public StepPage {
 
   protected:
     void refresh() override;
+    QWidget* due() override;
 
   private:
     void add_device(bool sensor);

@@ -7,6 +7,7 @@
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
 #include "widgets/editors/number_box.h"
+#include "widgets/into_view.h"
 #include "widgets/pages/parts/type_chooser.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
@@ -197,13 +198,36 @@ void ProvePage::make_checklist() {
     box().addWidget(finding_);
     open_ = make_button("open_step", "next", tr("Open its page"), tr("Where this step is worked on"), [this] {
         const int row = checklist_->currentRow();
-        if (row >= 0 && row < static_cast<int>(desk_.checks().size()))
-            emit step_wanted(page_of(desk_.checks()[static_cast<std::size_t>(row)].step));
+        if (row < 0 || row >= static_cast<int>(desk_.checks().size())) return;
+        const CheckStep item = desk_.checks()[static_cast<std::size_t>(row)].step;
+        if (page_of(item) != Step::prove) {
+            emit step_wanted(page_of(item));
+            return;
+        }
+        bring_into_view(control_of(item));
+        control_of(item)->setFocus(Qt::TabFocusReason);
     });
     box().addLayout(
         make_row({open_, make_button("make_report", "export", tr("Hand-over report..."),
                                      tr("PDF or HTML: devices, calibrations, spots, proofs, limits, events"),
                                      [this] { emit report_wanted(); })}));
+}
+
+QWidget* ProvePage::control_of(CheckStep item) {
+    return item == CheckStep::zero_shift    ? static_cast<QWidget*>(start_zero_)
+           : item == CheckStep::known_shift ? static_cast<QWidget*>(start_known_)
+                                            : checklist_;
+}
+
+// What is proven by another program or on another page is chosen in the list, which says how.
+QWidget* ProvePage::due() {
+    for (std::size_t i = 0; i < desk_.checks().size(); ++i) {
+        const CheckItem& item = desk_.checks()[i];
+        if (item.done() || step_of(item.step) != Step::prove) continue;
+        checklist_->setCurrentCell(static_cast<int>(i), 0);
+        return control_of(item.step);
+    }
+    return nullptr;
 }
 
 void ProvePage::entered() {
@@ -270,7 +294,6 @@ void ProvePage::draw_zero_shift(const ZeroShift& zero) {
     const std::string id = region_->currentText().toStdString();
     std::vector<QString> labels;
     std::vector<TrendSeries> moves{{tr("X"), {}}, {tr("Y"), {}}, {tr("Z"), {}}};
-    std::vector<double> all;
     for (const std::int64_t number_of_run : zero.runs) {
         const auto run = desk_.run(number_of_run);
         if (!run) continue;  // deleted since
@@ -279,14 +302,11 @@ void ProvePage::draw_zero_shift(const ZeroShift& zero) {
             if (r.region_id == id && r.correction)
                 shift = r.correction->displacement.workobject_from_movedworkobject.translation();
         labels.push_back(QString::number(number_of_run));
-        for (int k = 0; k < 3; ++k) {
-            moves[static_cast<std::size_t>(k)].values.push_back(shift[k]);
-            all.push_back(shift[k]);
-        }
+        for (int k = 0; k < 3; ++k) moves[static_cast<std::size_t>(k)].values.push_back(shift[k]);
     }
     views_.trend->set_data(tr("Zero shift of region %1").arg(region_->currentText()), QStringLiteral("mm"),
                            labels, moves, {});
-    views_.histogram->set_data(tr("Zero shift, X Y Z"), QStringLiteral("mm"), all, {});
+    views_.histogram->set_data(tr("Zero shift, X Y Z"), QStringLiteral("mm"), moves, {});
 }
 
 void ProvePage::refresh_known_shift() {
@@ -328,18 +348,19 @@ void ProvePage::draw_known_shift(const KnownShift& proof) {
     const std::string id = region_->currentText().toStdString();
     std::vector<QString> labels;
     TrendSeries mean{tr("mean deviation"), {}};
-    std::vector<double> all;
+    std::vector<TrendSeries> axes{{tr("X"), {}}, {tr("Y"), {}}, {tr("Z"), {}}};
     for (const ShiftTest& test : proof.tests)
         for (const ShiftOutcome& o : test.regions) {
             if (o.region_id != id) continue;
             labels.push_back(q(shift_name(test, proof)));
             mean.values.push_back(o.deviations_mm.empty() ? std::nan("") : o.mean_abs_mm);
-            all.insert(all.end(), o.deviations_mm.begin(), o.deviations_mm.end());
+            for (std::size_t i = 0; i < o.deviations_mm.size(); ++i)
+                axes[i % 3].values.push_back(o.deviations_mm[i]);
         }
     const double required = desk_.project().requirements.sigma3_mm;
     views_.trend->set_data(tr("Known shift of region %1").arg(region_->currentText()), QStringLiteral("mm"),
                            labels, {mean}, {std::nullopt, required});
-    views_.histogram->set_data(tr("Deviations X Y Z at the spots"), QStringLiteral("mm"), all,
+    views_.histogram->set_data(tr("Deviations X Y Z at the spots"), QStringLiteral("mm"), axes,
                                {-required, required});
 }
 

@@ -22,6 +22,7 @@ class ProvePage : public StepPage {
 
   protected:
     void refresh() override;
+    QWidget* due() override;
     void entered() override;
 
   private:
@@ -32,6 +33,7 @@ class ProvePage : public StepPage {
     void refresh_zero_shift();
     void refresh_known_shift();
     void show_item();
+    QWidget* control_of(CheckStep item);
     void ask_to_place(const QString& name, const Pose& base_from_shiftedbase);
     void draw_zero_shift(const ZeroShift& zero);
     void draw_known_shift(const KnownShift& proof);

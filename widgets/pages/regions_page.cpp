@@ -248,6 +248,10 @@ const Region* RegionsPage::region() const {
     return at < 0 ? nullptr : &desk_.project().regions[static_cast<std::size_t>(at)];
 }
 
+QWidget* RegionsPage::due() {
+    return desk_.project().regions.empty() ? findChild<QWidget*>("add_region") : list_;
+}
+
 void RegionsPage::refresh() {
     filling_ = true;
     const Project& p = desk_.project();

@@ -20,6 +20,7 @@ class RegionsPage : public StepPage {
 
   protected:
     void refresh() override;
+    QWidget* due() override;
     void entered() override;
 
   private:

@@ -2,6 +2,7 @@
 
 #include <QHeaderView>
 #include <QMessageBox>
+#include <algorithm>
 #include <utility>
 
 #include "widgets/into_view.h"
@@ -50,7 +51,6 @@ RunPage::RunPage(Desk& desk, const Views& views)
     ask_box->addWidget(question_);
     frames_ = make_table("push_frames", {tr("Frame"), tr("X Y Z mm  A B C deg")},
                          tr("What would be written, and what stands there"));
-    frames_->setMinimumHeight(200);
     ask_box->addWidget(frames_);
     push_ = make_button("push", "push", tr("Push"),
                         tr("Writes these frames to the robot, reads them back and compares"),
@@ -69,6 +69,12 @@ RunPage::RunPage(Desk& desk, const Views& views)
     regions_ = make_table("run_regions", {tr("Region, verdict"), tr("X Y Z mm"), tr("A B C deg")},
                           tr("Displacement per region with its sigma, and what was written"));
     regions_->setMinimumHeight(6 * style::kTargetPx);
+    // As high as its rows are: the page scrolls, a table within it would show one region and a half.
+    connect(regions_->verticalHeader(), &QHeaderView::sectionResized, regions_, [this] {
+        constexpr int kMost_px = 20 * style::kTargetPx;
+        const int all = regions_->verticalHeader()->length() + regions_->horizontalHeader()->height() + 8;
+        regions_->setMinimumHeight(std::clamp(all, 6 * style::kTargetPx, kMost_px));
+    });
     // The words wrap, the numbers do not.
     regions_->horizontalHeader()->setSectionResizeMode(0, QHeaderView::Stretch);
     regions_->horizontalHeader()->setSectionResizeMode(2, QHeaderView::ResizeToContents);
@@ -172,15 +178,43 @@ void RunPage::set_asks(bool asks) {
     confirm_->setVisible(asks);
     if (asks_ == asks) return;
     asks_ = asks;
+    if (asks && parentWidget()) parentWidget()->installEventFilter(this);
     emit asks_changed();
 }
 
 void RunPage::entered() {
     views_.raise(views_.residuals);
     views_.raise(views_.scene);
-    if (!asks_) return;
+    if (asks_) point_out();
+}
+
+void RunPage::point_out() {
+    if (!asks_) return StepPage::point_out();
+    fit_question();
     bring_into_view(confirm_);
-    decline_->setFocus();
+    decline_->setFocus(Qt::TabFocusReason);
+}
+
+void RunPage::fit_question() {
+    constexpr int kLeastTable_px = 3 * style::kTargetPx, kEdges_px = 12;
+    const QWidget* view = parentWidget();
+    if (!view || !asks_) return;
+    const int all = frames_->verticalHeader()->length() + frames_->horizontalHeader()->height() + 8;
+    frames_->setFixedHeight(kLeastTable_px);
+    confirm_->layout()->activate();
+    const int width = box().contentsRect().width();
+    const int beside = confirm_->layout()->totalHeightForWidth(width) - kLeastTable_px;
+    frames_->setFixedHeight(
+        std::clamp(view->height() - beside - kEdges_px, kLeastTable_px, std::max(kLeastTable_px, all)));
+}
+
+// The words above it may take more lines once they are there.
+bool RunPage::eventFilter(QObject* watched, QEvent* event) {
+    if (asks_ && watched == parentWidget() && event->type() == QEvent::Resize) {
+        fit_question();
+        bring_into_view(confirm_);
+    }
+    return StepPage::eventFilter(watched, event);
 }
 
 void RunPage::measure(bool push) {
@@ -236,7 +270,10 @@ void RunPage::show_number(std::int64_t number) {
 
 void RunPage::answer(bool yes) {
     set_asks(false);
-    desk_.worker().answer_push(yes);
+    const QString edited = yes ? desk_.edited_elsewhere() : QString();
+    if (!edited.isEmpty())
+        emit desk_.trouble(tr("%1: nothing was pushed. Open the project again.").arg(edited));
+    desk_.worker().answer_push(yes && edited.isEmpty());
 }
 
 }  // namespace seamwright

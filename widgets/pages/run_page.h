@@ -16,6 +16,7 @@ class RunPage : public StepPage {
     void measure(bool push);
     // A push waits for an answer here.
     bool asks() const { return asks_; }
+    void point_out() override;  // the question, while it asks
 
   signals:
     void asks_changed();
@@ -23,6 +24,8 @@ class RunPage : public StepPage {
   protected:
     void refresh() override;
     void entered() override;
+    QWidget* due() override { return measure_; }
+    bool eventFilter(QObject* watched, QEvent* event) override;
 
   private:
     // Of a measurement that was asked for here, or of one of the history, which says so.
@@ -35,6 +38,7 @@ class RunPage : public StepPage {
     void begin();  // of a job: what is shown is of no part any more
     void ended();  // without a run
     void set_asks(bool asks);
+    void fit_question();  // wholly in the view, whose table scrolls
     void ask(const std::shared_ptr<const RunRecord>& judged);
     void answer(bool yes);
     void show_history();

@@ -207,16 +207,13 @@ void RunPage::ask(const std::shared_ptr<const RunRecord>& judged) {
         }
     }
     set_rows(*frames_, rows);
-    frames_->setMinimumHeight(frames_->verticalHeader()->length() + frames_->horizontalHeader()->height() +
-                              8);
     QStringList names;
     for (const std::string& id : robots) names << QString::fromStdString(id);
     question_->setText(tr("These frames would be written. Nothing has been sent yet."));
     push_->setText(tr("Push %1 frames to %2").arg(judged->regions.size()).arg(names.join(", ")));
     push_->setAccessibleName(push_->text());
     set_asks(true);
-    bring_into_view(confirm_);
-    decline_->setFocus();
+    point_out();
 }
 
 void RunPage::show_history() {
@@ -267,9 +264,7 @@ void RunPage::show_history() {
     QString title = tr("Displacement of region %1").arg(QString::fromStdString(id));
     if (refused > 0) title += "   " + tr("%n refused", nullptr, refused);
     views_.trend->set_data(title, QStringLiteral("mm"), labels, series, limits);
-    std::vector<double> all;
-    for (const TrendSeries& s : series) all.insert(all.end(), s.values.begin(), s.values.end());
-    views_.histogram->set_data(tr("Displacement, X Y Z"), QStringLiteral("mm"), all, limits);
+    views_.histogram->set_data(tr("Displacement, X Y Z"), QStringLiteral("mm"), series, limits);
 }
 
 void RunPage::compare() {

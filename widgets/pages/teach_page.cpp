@@ -139,6 +139,10 @@ const Spot* TeachPage::spot() const {
     return find_spot(desk_.project(), desk_.selection().spot());
 }
 
+QWidget* TeachPage::due() {
+    return spot_head_->findChild<QWidget*>("head_deed");
+}
+
 void TeachPage::refresh() {
     tree_->refresh();
     spot_head_->refresh();

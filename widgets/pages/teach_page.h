@@ -23,6 +23,7 @@ class TeachPage : public StepPage {
 
   protected:
     void refresh() override;
+    QWidget* due() override;
     void entered() override;
     void hideEvent(QHideEvent* event) override;
 

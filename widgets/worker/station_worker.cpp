@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "devices/registry.h"
+#include "devices/simulated/cell.h"
 #include "projects/measure/measure.h"
 #include "projects/station/acquire.h"
 #include "widgets/shown_text.h"
@@ -64,6 +65,12 @@ bool StationWorker::busy() const {
     return busy_ || !queue_.empty();
 }
 
+bool StationWorker::losable() const {
+    const std::lock_guard lock(mutex_);
+    return (busy_ && doing_ == Loss::result) ||
+           std::any_of(queue_.begin(), queue_.end(), [](const Request& r) { return r.loss == Loss::result; });
+}
+
 void StationWorker::cancel() {
     const std::lock_guard lock(mutex_);
     jog_request_.reset();
@@ -85,8 +92,12 @@ void StationWorker::answer_push(bool yes) {
 }
 
 void StationWorker::post(const QString& what, Task task) {
+    post(Loss::result, what, std::move(task));
+}
+
+void StationWorker::post(Loss loss, const QString& what, Task task) {
     const std::lock_guard lock(mutex_);
-    queue_.push_back({what, std::move(task), {}});
+    queue_.push_back({what, std::move(task), {}, loss});
     wake_.notify_all();
 }
 
@@ -102,7 +113,7 @@ void StationWorker::attach_feed(Station& station) {
 }
 
 void StationWorker::connect_devices() {
-    post(tr("Connecting"), [this](Station& station, const std::stop_token& cancel) {
+    post(Loss::none, tr("Connecting"), [this](Station& station, const std::stop_token& cancel) {
         feed_.detach();
         connect_trouble_.clear();
         auto connected = station.connect({.cancel = cancel});
@@ -111,16 +122,18 @@ void StationWorker::connect_devices() {
             emit failed(shown_error(tr("The devices were not connected."), connected.error()));
         } else {
             ++connection_;
-            // A simulated robot that stands nowhere yet goes to the first spot, so that there is something to
-            // see; a real one is never moved from here.
+            // A simulated robot that stands nowhere yet goes to its first spot, or home, so that there is
+            // something to see and it can be moved by hand; a real one is never moved from here.
             for (const RobotSetup& setup : station.project().robots) {
                 RobotLink* robot = station.robot(setup.id);
                 if (!is_simulated_cell(setup.driver) || robot->base_from_flange()) continue;
-                for (const Spot& spot : station.project().spots)
-                    if (spot.robot_id == setup.id) {
-                        (void)robot->move_to(spot.base_from_flange);
-                        break;
-                    }
+                const auto& spots = station.project().spots;
+                const auto spot = std::find_if(spots.begin(), spots.end(),
+                                               [&](const Spot& s) { return s.robot_id == setup.id; });
+                if (spot != spots.end())
+                    (void)robot->move_to(spot->base_from_flange);
+                else if (const auto home = simulated_home(setup.settings))
+                    (void)robot->move_to(*home);
             }
             attach_feed(station);
         }
@@ -129,7 +142,7 @@ void StationWorker::connect_devices() {
 }
 
 void StationWorker::disconnect_devices() {
-    post(tr("Disconnecting"), [this](Station& station, const std::stop_token&) {
+    post(Loss::none, tr("Disconnecting"), [this](Station& station, const std::stop_token&) {
         feed_.detach();
         connect_trouble_.clear();
         station.disconnect();
@@ -275,7 +288,7 @@ void StationWorker::go_to(const std::string& robot_id, const Pose& base_from_fla
 }
 
 void StationWorker::search_cameras() {
-    post(tr("Searching cameras"), [this](Station&, const std::stop_token&) {
+    post(Loss::none, tr("Searching cameras"), [this](Station&, const std::stop_token&) {
         emit cameras_found(std::make_shared<const std::vector<DiscoveredCamera>>(discover_cameras()));
     });
 }
@@ -306,7 +319,7 @@ void StationWorker::move_by_hand(Station& station, const JogRequest& request) {
 
 void StationWorker::set_sensor_parameter(const std::string& sensor_id, const std::string& name,
                                          double value) {
-    post(tr("Setting the sensor"), [=, this](Station& station, const std::stop_token&) {
+    post(Loss::none, tr("Setting the sensor"), [=, this](Station& station, const std::stop_token&) {
         ProfileSource* sensor = station.sensor(sensor_id);
         if (!sensor)
             return emit failed(tr("sensor %1 is not connected").arg(QString::fromStdString(sensor_id)));
@@ -350,6 +363,25 @@ void StationWorker::publish(Station& station) {
         state->robots.push_back(std::move(r));
     }
     emit state_changed(std::move(state));
+}
+
+// A connected device that the project has no more, or under another name, is let go of: nothing could reach it, and its
+// old name would stay on the screen.
+void StationWorker::take_project(Station& station, const Project& newest) {
+    const Project& before = station.project();
+    const bool gone =
+        std::any_of(
+            before.sensors.begin(), before.sensors.end(),
+            [&](const SensorSetup& s) { return station.sensor(s.id) && !find_sensor(newest, s.id); }) ||
+        std::any_of(before.robots.begin(), before.robots.end(),
+                    [&](const RobotSetup& r) { return station.robot(r.id) && !find_robot(newest, r.id); });
+    if (gone) {
+        stop_live();
+        feed_.detach();
+        station.disconnect();
+    }
+    station.use(newest);
+    if (gone) publish(station);
 }
 
 void StationWorker::stop_live() {
@@ -408,13 +440,17 @@ void StationWorker::work(const std::stop_token& stop) {
                 continue;
             }
             if (newest_project_) {
-                if (station_) station_->use(*newest_project_);
-                newest_project_.reset();
+                const std::unique_ptr<Project> newest = std::move(newest_project_);
+                lock.unlock();
+                if (station_) take_project(*station_, *newest);
+                lock.lock();
+                if (open_request_ || close_request_ || newest_project_) continue;
             }
             if (!queue_.empty()) {
                 request = std::move(queue_.front());
                 queue_.pop_front();
                 cancel_ = request.cancel;
+                doing_ = request.loss;
                 busy_ = true;
             }
             who = who_;

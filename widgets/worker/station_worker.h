@@ -123,6 +123,8 @@ class StationWorker : public QObject {
     void answer_push(bool yes);  // to confirm_push
     void cancel();               // what runs and what waits; connecting and setting are done nevertheless
     bool busy() const;
+    // What runs or waits has a result that closing would lose; connecting, searching and setting have none.
+    bool losable() const;
 
   signals:
     void state_changed(std::shared_ptr<const seamwright::StationState> state);
@@ -157,7 +159,10 @@ class StationWorker : public QObject {
 
   private:
     using Task = std::function<void(Station&, const std::stop_token&)>;
+    enum class Loss { none, result };
     void post(const QString& what, Task task);
+    void post(Loss loss, const QString& what, Task task);
+    void take_project(Station& station, const Project& newest);
     void work(const std::stop_token& stop);
     void start_live(Station& station);
     void stop_live();
@@ -175,6 +180,7 @@ class StationWorker : public QObject {
         QString what;
         Task task;
         std::stop_source cancel;
+        Loss loss = Loss::result;
     };
     std::deque<Request> queue_;
     struct JogRequest {
@@ -187,6 +193,7 @@ class StationWorker : public QObject {
     std::optional<SignedIn> who_;
     std::optional<std::pair<std::filesystem::path, Project>> open_request_;
     bool close_request_ = false, busy_ = false, opened_ = false;
+    Loss doing_ = Loss::none;  // while busy_
     std::stop_source cancel_;
     std::optional<bool> push_answer_;
     std::unique_ptr<LiveSensors> live_;

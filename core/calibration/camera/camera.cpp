@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/calibration/camera/camera_limits.h"
+#include "core/calibration/camera/plate_bends.h"
 #include "core/calibration/camera/plate_doubt.h"
 #include "core/calibration/camera/projection.h"
 #include "core/calibration/numbers.h"
@@ -246,7 +247,8 @@ Text plate_hint(const PlateDoubt& doubt) {
 }
 
 // `bent`: by how many sigma the plate's own shape moves focal lengths or centre.
-Judgement judge(const CameraResult& r, std::size_t views, const Text& hint, double bent) {
+// `bends`: what the plate's bending from view to view does to the camera, where that is more than its corners' noise does.
+Judgement judge(const CameraResult& r, std::size_t views, const Text& hint, double bent, const Text& bends) {
     // What is worse is poor, or usable: sigma of the focal length over itself, and fit of the corners.
     constexpr double kPoorFocal = 0.01, kUsableFocal = 0.002, kUsableCorners_px = 0.5;
     constexpr double kMostBent = 3;            // sigma
@@ -270,6 +272,8 @@ Judgement judge(const CameraResult& r, std::size_t views, const Text& hint, doub
     if (sigma > kPoorFocal * f)
         return {Verdict::poor, Text("the focal length is known to {:.1f} % only", 100 * sigma / f), tilt};
     if (!hint.empty()) return {Verdict::usable, hint, flat};
+    if (!bends.empty())
+        return {Verdict::usable, bends, "take a stiff plate and hold it without force, or lay it down"};
     if (sigma > kUsableFocal * f)
         return {Verdict::usable, Text("the focal length is known to {:.2f} %", 100 * sigma / f), tilt};
     if (r.rms_px > kUsableCorners_px)
@@ -358,11 +362,20 @@ Expected<CameraResult> calibrate_camera(const CameraData& input, const CameraOpt
             {kIntrinsicNames[i], solution.intrinsics(static_cast<Eigen::Index>(i)), i < 4 ? "px" : "1", 0});
     const PlateDoubt doubt = doubt_of_plate(data, used, freedom, exactly, result.sigma_px, solution);
     double bent = 0;
+    Text bends;
     if (unit.size()) {
         report.covariance = variance * basis * unit * basis.transpose();
         for (Eigen::Index i = 0; doubt.tells && i < 4; ++i)
             if (report.covariance(i, i) > 0)
                 bent = std::max(bent, std::abs(doubt.moves(i)) / std::sqrt(report.covariance(i, i)));
+        const double corner2 = result.sigma_px * result.sigma_px;
+        if (corner2 > 0) {
+            const PlateBends plate = bends_of_plate(data, used, solution, variance / corner2 * unit);
+            for (Eigen::Index i = 0; plate.tells && i < 4; ++i)
+                if (plate.covariance(i, i) > report.covariance(i, i) && report.covariance(i, i) > 0)
+                    bends = Text("the plate bends otherwise in each view, by {:.2f} mm", plate.bow_mm);
+            report.covariance += plate.covariance;
+        }
         if (doubt.tells) report.covariance += doubt.moves * doubt.moves.transpose();
         finish_statistics(report);
     }
@@ -410,7 +423,7 @@ Expected<CameraResult> calibrate_camera(const CameraData& input, const CameraOpt
         report.hold_out.rms_mm = std::sqrt(p.square_mm);
         report.hold_out.max_mm = p.max_mm;
     }
-    report.judgement = judge(result, data.views.size(), plate_hint(doubt), bent);
+    report.judgement = judge(result, data.views.size(), plate_hint(doubt), bent, bends);
     if (report.judgement.verdict == Verdict::undetermined) report.covariance.resize(0, 0);
     return result;
 }

@@ -476,7 +476,7 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
     const double form = noise.form_factor(result.straightness_after_px, lines.points(), lines.count());
     result.bent = form > 1;
     result.centre_strays = (k.segment<2>(2) - middle).norm() > hold;
-    report.covariance *= form;
+    report.covariance *= std::max(form, noise.alike_factor(static_cast<double>(n)));
     if (!options.full && solved.converged && stays_bent(result.straightness_after_px, result.point_noise_px))
         if (const Solution full = solve_lens(lines, k, {2, 3, 4, 5, 8, 6, 7}, middle, hold); full.converged)
             result.full_model_px = std::sqrt(full.squares / points);

@@ -17,6 +17,8 @@
 // stays bent by 4 times what the middling line does (its plane is not flat there), is left out and named; no
 // more than a third of the lines.
 //
+// Neighbours on a line that err alike widen the covariance by the sum of their autocorrelation (line_noise.h).
+//
 // Determined: distortion and centre. Not determined: the focal length, and the centre where there is no
 // distortion (it is held to the middle of the image with a sigma of a tenth of the width). Degenerate: lines
 // through the centre only, lines in one corner, fewer than 3 lines.

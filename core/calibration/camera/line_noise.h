@@ -22,9 +22,16 @@ class LineNoise {
     // one for points that miss it each by itself. One where the lines are as straight as their points let see (`rms_px`
     // within kStraightTimes their scatter, or within chance).
     double form_factor(double rms_px, double points, int lines) const;
+    // Neighbours that err alike: the covariance for that over the one for points that err each by itself, one and twice the
+    // sum of the autocorrelation up to where it is no more than chance. Per line fitted were two numbers and a share of
+    // `unknowns`, which takes some of it away.
+    double alike_factor(double unknowns) const;
 
   private:
     double squares_ = 0, count_ = 0;
+    // Products of points so many places apart along a line, and how many; over all lines.
+    std::vector<double> products_, pairs_;
+    double lines_ = 0;
 };
 
 }  // namespace seamwright

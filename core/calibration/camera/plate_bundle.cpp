@@ -141,11 +141,15 @@ class Bundle {
                 camera_costs::robot(*seen_.base_from_flange[i], seen_.robot_sigma_mm, seen_.robot_sigma_rad),
                 nullptr, hand_eye_.data(), target_.data(), pose);
         if (!has_stripe(i)) return;
+        // Rows that err alike count as few as tell their mean as badly.
+        const double alike = 1 + std::pow(seen_.stripe_between_mm / seen_.stripe_sigma_mm, 2) *
+                                     static_cast<double>(seen_.stripe[i].size());
         for (const auto& pixel : seen_.stripe[i])
-            problem_.AddResidualBlock(camera_costs::stripe(pixel, state_.shape, seen_.stripe_on_bow,
-                                                           data_.width, data_.height, seen_.stripe_sigma_mm),
-                                      new ceres::HuberLoss(kRobustSigmas), k_.data(), shape_.data(),
-                                      plane_.data(), pose);
+            problem_.AddResidualBlock(
+                camera_costs::stripe(pixel, state_.shape, seen_.stripe_on_bow, data_.width, data_.height,
+                                     seen_.stripe_sigma_mm),
+                new ceres::ScaledLoss(new ceres::HuberLoss(kRobustSigmas), 1 / alike, ceres::TAKE_OWNERSHIP),
+                k_.data(), shape_.data(), plane_.data(), pose);
     }
 
     CameraPoints used_of(std::size_t view) const {

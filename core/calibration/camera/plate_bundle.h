@@ -64,6 +64,7 @@ struct PlateBundle {
     std::vector<char> stripe_used;  // per view
     bool stripe_on_bow = true;      // the stripe lies on the bowed surface, or on its tangent plane
     double stripe_sigma_mm = 0.2;
+    double stripe_between_mm = 0;  // standard deviation of a view's stripe as a whole, on top of its rows'
 };
 
 struct LaserPlane {

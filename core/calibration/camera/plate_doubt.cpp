@@ -6,32 +6,10 @@
 #include <cmath>
 
 #include "core/calibration/camera/f_test.h"
-#include "core/calibration/camera/projection.h"
+#include "core/calibration/camera/plate_corners.h"
 
 namespace seamwright {
 namespace {
-
-using ShapeNumbers = Eigen::Matrix<double, 5, 1>;
-constexpr Eigen::Index kPoseNumbers = 6, kShapeNumbers = 5;
-
-bool given_flat(const CameraData& data) {
-    constexpr double kAtZero_mm = 1e-9;
-    return std::all_of(data.views.begin(), data.views.end(), [](const CameraPoints& v) {
-        return std::all_of(v.object_mm.begin(), v.object_mm.end(),
-                           [](const Eigen::Vector3d& p) { return std::abs(p.z()) <= kAtZero_mm; });
-    });
-}
-
-Eigen::VectorXd corner_misses(const Intrinsics& k, const Pose& pose, const PlateShape& shape,
-                              const ShapeNumbers& bent, const CameraPoints& view) {
-    Eigen::VectorXd r(2 * static_cast<Eigen::Index>(view.pixel.size()));
-    for (std::size_t i = 0; i < view.pixel.size(); ++i) {
-        const Eigen::Vector3d ray = pose * shape.bent(bent.data(), view.object_mm[i]);
-        r.segment<2>(2 * static_cast<Eigen::Index>(i)) =
-            pixel_of_ray(k.data(), ray.x() / ray.z(), ray.y() / ray.z()) - view.pixel[i];
-    }
-    return r;
-}
 
 // Of r within the columns of a; how many of these are independent is added to `rank`.
 double squares_within(Eigen::MatrixXd a, const Eigen::VectorXd& r, double sign, double& rank) {
@@ -54,22 +32,7 @@ double own_shapes_px2(const CameraData& data, const std::vector<std::vector<char
         const CameraPoints view = chosen(data.views[i], used[i]);
         const Pose& pose = at.camera_from_target[i];
         const Eigen::VectorXd r = corner_misses(at.intrinsics, pose, at.shape, bent, view);
-        Eigen::MatrixXd j(r.size(), kPoseNumbers + kShapeNumbers);
-        for (Eigen::Index k = 0; k < j.cols(); ++k) {
-            Vector6 by = Vector6::Zero();
-            ShapeNumbers up = bent, down = bent;
-            double step = 1e-3;  // mm, of shift and bow
-            if (k < kPoseNumbers) {
-                if (k > 2) step = 1e-6;
-                by(k) = step;
-            } else {
-                if (k < kPoseNumbers + 2) step = 1e-6;  // stretch, shear
-                up(k - kPoseNumbers) += step, down(k - kPoseNumbers) -= step;
-            }
-            j.col(k) = (corner_misses(at.intrinsics, retract(pose, by), at.shape, up, view) -
-                        corner_misses(at.intrinsics, retract(pose, -by), at.shape, down, view)) /
-                       (2 * step);
-        }
+        const Eigen::MatrixXd j = by_pose_and_shape(at.intrinsics, pose, at.shape, view);
         if (!j.allFinite() || !r.allFinite()) continue;
         sum += squares_within(j, r, 1, freedom) - squares_within(j.leftCols(kPoseNumbers), r, -1, freedom);
     }
@@ -96,11 +59,7 @@ PlateDoubt doubt_of_plate(const CameraData& data, const std::vector<std::vector<
     PlateBundleState s;
     s.intrinsics = solution.intrinsics;
     s.camera_from_target = solution.camera_from_target;
-    Eigen::Vector2d low(1e300, 1e300), high(-1e300, -1e300);
-    for (const auto& v : data.views)
-        for (const auto& x : v.object_mm) low = low.cwiseMin(x.head<2>()), high = high.cwiseMax(x.head<2>());
-    s.shape.middle_mm = 0.5 * (low + high);
-    s.shape.half_mm = 0.5 * (high - low).maxCoeff();
+    s.shape = shape_over(data);
     const auto fit = solve_plate_bundle(p, s);
     if (!fit.converged || !fit.covariance.size() || !(fit.corner_cost < solution.cost)) return doubt;
     const double left = 2.0 * static_cast<double>(solution.points) -

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/calibration/nozzle/next_touch.h"
+#include "core/calibration/nozzle/radius_doubt.h"
 #include "core/calibration/nozzle/wrong_touches.h"
 #include "core/calibration/numbers.h"
 #include "core/calibration/pose_set.h"
@@ -45,7 +46,7 @@ Expected<void> check_target(const NozzleTarget& target, const NozzleOptions& opt
         !(*target.radius_mm >= kSmallestSphere_mm && *target.radius_mm <= kLargestSphere_mm))
         return input_error("the sphere's radius is not between 0.1 and 1000 mm", "target",
                            "give it in millimetres as its certificate says");
-    if (!(target.radius_sigma_mm >= 0 && target.radius_sigma_mm < 100))
+    if (target.radius_sigma_mm && !(*target.radius_sigma_mm >= 0 && *target.radius_sigma_mm < 100))
         return input_error("the sigma of the radius is no sigma", "target",
                            "give it in millimetres, 0 or more");
     if (!(options.tip_radius_mm >= 0 && options.tip_radius_mm < 100))
@@ -117,7 +118,8 @@ TouchSet set_of(const std::vector<NozzleTouch>& touches, const std::vector<std::
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(target.covariance_mm2);
     set.half = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
     set.rho_mm = target.radius_mm.value_or(0) + options.tip_radius_mm;
-    set.spread_mm = set.sphere ? target.radius_sigma_mm : 0;
+    set.spread_mm = set.sphere ? target.radius_sigma_mm.value_or(kUnstatedRadius * set.rho_mm) : 0;
+    set.spread_stated = target.radius_sigma_mm.has_value();
     set.robot_mm = options.robot.sigma_mm;
     set.robot_rad = options.robot.sigma_rad;
     set.sigma_mm = options.sigma_mm;
@@ -207,6 +209,12 @@ void judge(const std::vector<NozzleTouch>& touches, const WrongTouches& found, N
         j = {Verdict::poor,
              Text("one of the touches {} slipped, and nothing tells which", names_of(found.either, touches)),
              joined("repeat them", "; ", next)};
+    else if (const auto radius = other_radius(found.set, fit))
+        j = {Verdict::poor,
+             Text("by the touches the sphere's radius and that of the tip's ball are {:.2f} mm together, not "
+                  "{:.2f} mm",
+                  *radius, found.set.rho_mm),
+             "check the sphere's radius, and state the ball of a measuring pin as tip_radius_mm"};
     else if (contradict)
         j = {
             Verdict::poor,

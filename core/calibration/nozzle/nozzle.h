@@ -18,6 +18,9 @@
 // touches correct them as far as they can: c and t part only by turning the flange. Of touches that all have one
 // orientation c's error goes into the tip whole, R^T S R; they determine it all the same, and a notice says so.
 //
+// rho is tested besides: where the touches with a free rho fit better than chance allows (F test, 5 in a thousand), and
+// where no sigma of it is stated by more than the assumed one, the verdict is poor and names what rho comes out as.
+//
 // An estimated sigma makes chi squared of the touches as large as its expectation, n - tr(J C J^T W) (GUM, Satterthwaite's
 // degrees of freedom), and the random part of the covariance is stretched so that 1.96 sigma hold 95 % (Student).
 //
@@ -40,6 +43,9 @@
 
 namespace seamwright {
 
+// One sigma of the distance of tip and centre, of itself, where none is stated.
+inline constexpr double kUnstatedRadius = 0.005;
+
 struct NozzleTouch {
     std::string id;
     Pose base_from_flange = Pose::Identity();
@@ -50,7 +56,8 @@ struct NozzleTarget {
     Eigen::Vector3d place_mm = Eigen::Vector3d::Zero();        // c0, base
     Eigen::Matrix3d covariance_mm2 = Eigen::Matrix3d::Zero();  // S, base; common to all touches
     std::optional<double> radius_mm;
-    double radius_sigma_mm = 0;  // of radius and tip's ball together, common to all touches
+    // Of radius and tip's ball together, common to all touches; absent: kUnstatedRadius of them.
+    std::optional<double> radius_sigma_mm;
 };
 
 struct NozzleOptions {

@@ -23,6 +23,7 @@ struct TouchSet {
     Eigen::Vector3d place_mm = Eigen::Vector3d::Zero();
     Eigen::Matrix3d half = Eigen::Matrix3d::Zero();  // half half^T = S
     double rho_mm = 0, spread_mm = 0;
+    bool spread_stated = true;  // else spread_mm is assumed
     double robot_mm = 0, robot_rad = 0;
     std::optional<double> sigma_mm;
     std::optional<Eigen::Vector3d> near;  // programmed: one more place to start from

@@ -32,8 +32,10 @@ constexpr double kWrongTold = 0.9999;  // of chi squared: a pair beyond contradi
 constexpr double kNoDoubt = 400, kNoDoubt_mm = 0.1, kNoDoubt_rad = 1e-3;
 constexpr std::array kRobustScales{100.0, 30.0, 30.0};  // Geman and McClure, one after the other
 constexpr double kCopy_mm = 1e-6, kCopy_rad = 1e-9;     // pairs nearer to each other than that are copies
-constexpr double kSizeAsked_mm = 30;       // rms beyond which no wrong size of the target is the cause
-constexpr std::size_t kFewestForSize = 4;  // stands
+constexpr double kSizeAsked_mm = 30;  // rms beyond which no wrong size of the target is the cause
+constexpr std::size_t kFewestForSize = 4, kFewestBesideRobot = 3;  // stands; where the robot is stated
+constexpr double kSizeKnown =
+    0.01;  // one sigma of a target's size before the pairs, where they are too few to test it
 constexpr double kSizeSettled = 1e-5;
 constexpr double kOtherMountFits = 0.2;  // of the rms: what the other mount must fit better than
 
@@ -207,14 +209,25 @@ void state_rms(const Chain& chain, const Pose& x, const Pose& y, HandEyeResult& 
     result.rms_deg = deg_from_rad(std::sqrt(squares_rad / n));
 }
 
-// The pairs used, those of one stand of the robot as one, seen from its first.
-Chain one_a_stand(const Chain& chain, const std::vector<Pose>& base_from_flange, const Pose& x) {
+// Of the size, what the pairs leave open of kSizeKnown: in X and Y, which are of size 1.
+Matrix12 cover_of_size(const Weighed& sized) {
+    const double told = sized.covariance(12, 12), known = kSizeKnown * kSizeKnown;
+    const Vector12 slope = sized.covariance.col(12).head<12>() / told;
+    const double share = known / (known + told), off = share * (sized.size - 1);
+    return (share * told + off * off) * slope * slope.transpose();
+}
+
+// The pairs used, those of one stand of the robot as one, seen from its first; `which`: the pair that this is.
+Chain one_a_stand(const Chain& chain, const std::vector<Pose>& base_from_flange, const Pose& x,
+                  std::vector<size_t>& which) {
     Chain used, stands;
+    std::vector<size_t> pair;
     std::vector<Pose> flanges;
     for (size_t i = 0; i < chain.size(); ++i) {
         if (!chain.used[i]) continue;
         used.a.push_back(chain.a[i]);
         used.c.push_back(chain.c[i]);
+        pair.push_back(i);
         flanges.push_back(base_from_flange[i]);
     }
     const auto first = first_equal_pose(flanges);
@@ -231,6 +244,7 @@ Chain one_a_stand(const Chain& chain, const std::vector<Pose>& base_from_flange,
         stands.a.push_back(used.a[i]);
         stands.c.push_back(retract(used.c[i], sum / count));
         stands.used.push_back(true);
+        which.push_back(pair[i]);
     }
     return stands;
 }
@@ -404,7 +418,8 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
     std::vector<Pose> every_flange;
     for (const auto& pair : pairs) every_flange.push_back(pair.base_from_flange);
     const bool outside = mount == Mount::eye_to_hand;
-    const Chain stands = one_a_stand(chain, every_flange, x);
+    std::vector<size_t> of_stand;
+    const Chain stands = one_a_stand(chain, every_flange, x, of_stand);
     if (stands.size() < chain.used_count()) scales = solve(stands, x, y, scales);
     const Weighed weighed = weigh(stands, outside, robot, x, y, scales);
     x = result.x = weighed.x;
@@ -421,23 +436,33 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
     evidence.robot_stated = robot.stated();
     for (const Pose& c : stands.c)
         evidence.reach_mm += c.translation().norm() / static_cast<double>(stands.size());
-    if (stands.size() >= kFewestForSize && result.rms_mm < kSizeAsked_mm) {
+    const bool few = stands.size() < kFewestForSize;
+    if (stands.size() >= (robot.stated() ? kFewestBesideRobot : kFewestForSize) &&
+        result.rms_mm < kSizeAsked_mm) {
         const Weighed sized = with_size(stands, outside, robot, x, y, scales);
         result.target_size = sized.size;
         result.target_size_sigma = std::sqrt(sized.covariance(12, 12));
-        if (size_is_off(result.target_size, result.target_size_sigma)) {
+        if (few) {
+            covariance += cover_of_size(sized);
+        } else if (size_is_off(result.target_size, result.target_size_sigma)) {
             Vector12 moved;
             moved << difference(sized.x, x), difference(sized.y, y);
             covariance += moved * moved.transpose();
         }
+    }
+    if (result.rms_mm < kSizeAsked_mm) {
+        evidence.bump = likeliest_break(stands, x, y);
+        if (evidence.bump) evidence.bumped_at = pairs[of_stand[evidence.bump->first]].id;
     }
     result.covariance_x = covariance.topLeftCorner<6, 6>();
     result.covariance_y = covariance.bottomRightCorner<6, 6>();
     add_pose(report, x);
     add_pose(report, y, "target_");
     state_covariance(report, covariance);
+    const std::size_t notices = result.notices.size();
     report.judgement = judge_hand_eye(evidence, result);
     if (report.judgement.verdict == Verdict::poor) {
+        result.notices.resize(notices);
         evidence.mistake = likely_mistake(mount, pairs, wanted, result.rms_mm);
         result.reversed = !evidence.mistake.empty();
         report.judgement = judge_hand_eye(evidence, result);

@@ -8,8 +8,9 @@ namespace hand_eye {
 namespace {
 
 constexpr double kGoodHand_mm = 1.0, kGoodHand_deg = 0.3, kUsableHand_mm = 3.0, kUsableHand_deg = 1.0;
-constexpr int kFewToCheck = 6;         // stands: fewer are little to check with
-constexpr int kFewestToTellNoise = 4;  // stands: fewer do not tell what they err by
+constexpr int kFewToCheck = 6;                          // stands: fewer are little to check with
+constexpr int kFewestToTellNoise = 4;                   // stands: fewer do not tell what they err by
+constexpr double kBumpTold = 1e-3, kBumpLikely = 5e-3;  // chance of a break in the order of the poses
 constexpr double kSizeSigmas = 4, kLeastSize = 2e-4;
 constexpr double kHarmlessSize_mm =
     0.15;  // at the target: less moves the camera by less than robots and pitches err
@@ -32,6 +33,21 @@ Judgement judge_hand_eye(const HandEyeEvidence& evidence, HandEyeResult& result)
     result.fits = check_mm <= kUsableHand_mm && check_deg <= kUsableHand_deg;
     if (wrong_target_size(result.target_size, result.target_size_sigma, evidence.reach_mm))
         return wrong_size_judgement(result.target_size);
+    if (evidence.bump && evidence.mistake.empty() && evidence.bump->mm > kHarmlessSize_mm) {
+        const double deg = deg_from_rad(evidence.bump->rad);
+        if (evidence.bump->chance < kBumpTold)
+            return {
+                Verdict::poor,
+                Text("from '{}' on the camera sees the target {:.2f} mm and {:.3f} degrees elsewhere: it or "
+                     "the target moved while the poses were taken",
+                     evidence.bumped_at, evidence.bump->mm, deg),
+                "fasten both and take the poses again"};
+        if (evidence.bump->chance < kBumpLikely)
+            result.notices.push_back(Text(
+                "the poses from '{}' on fit better with the target {:.2f} mm and {:.3f} degrees elsewhere: "
+                "check that neither it nor the camera has moved",
+                evidence.bumped_at, evidence.bump->mm, deg));
+    }
     if (result.fits && evidence.stands < kFewestToTellNoise && !evidence.robot_stated)
         return {
             Verdict::poor,

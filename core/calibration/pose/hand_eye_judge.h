@@ -1,7 +1,10 @@
 #pragma once
 // The verdict on a hand-eye. Inner part of hand_eye.h.
 
+#include <string>
+
 #include "core/calibration/pose/hand_eye.h"
+#include "core/calibration/pose/hand_eye_break.h"
 
 namespace seamwright::hand_eye {
 
@@ -9,7 +12,9 @@ struct HandEyeEvidence {
     int stands = 0;       // different robot poses
     double reach_mm = 0;  // mean distance of the target from the camera
     bool robot_stated = false;
-    Text mistake;  // what was probably confused; empty: nothing known
+    std::optional<Break> bump;
+    std::string bumped_at;  // id of the pair that the change is seen from
+    Text mistake;           // what was probably confused; empty: nothing known
 };
 
 // Beyond chance and beyond what pitches and robots are known to.

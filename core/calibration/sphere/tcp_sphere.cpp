@@ -31,9 +31,10 @@ constexpr double kNoiseFloor_mm =
 constexpr double kUndeterminedSigma_mm = 2.0;  // a direction weaker than this is not determined
 constexpr double kStatedTold = 0.99;  // of chi squared: the poses err by more than is stated of the robot
 constexpr double kLooksLikeMetres_mm = 0.5;  // extent of all profiles in x, and a radius, below
-constexpr double kLooksAtRadius_mm = 0.1;    // a fit worse than this may be one to a wrong radius
-// Another radius is told where it leaves this share of the disagreement and differs by so much.
+// Another radius is told where it leaves this share of the disagreement and differs by so much; else where it differs by
+// so many sigmas, and by more of itself than a sensor's own millimetres are wrong.
 constexpr double kMuchBetter = 0.2, kOtherRadius_mm = 0.05;
+constexpr double kRadiusSigmas = 4, kScaleOfSensors = 0.003;
 // Of a profile's steps in x, and of the profiles: so many one way make an order.
 constexpr double kOneWay = 0.8;
 constexpr double kBulges = 0.15;  // mean_side of a cap that is seen from one side
@@ -320,15 +321,22 @@ Matrix10 covariance_of(const std::vector<Section>& sections, const Model& model,
             covariance_of_centres(sections, model, inverse, noise.centre_variance));
 }
 
-// The radius that the profiles fit much better than the given one; NaN: none.
-double better_radius(const std::vector<Section>& sections, const Model& model, double mean_disagreement) {
-    Model free_model = model;
-    const double free_cost =
-        solve_reduced(sections, free_model, true, std::numeric_limits<double>::infinity(), 100);
-    return free_cost < kMuchBetter * mean_disagreement &&
-                   std::abs(free_model.radius - model.radius) > kOtherRadius_mm
-               ? free_model.radius
-               : kNaN;
+// The radius that the profiles fit much better than the given one, or that they tell from it beyond chance; NaN: none.
+double better_radius(const std::vector<Section>& sections, const Model& model, double mean_disagreement,
+                     const Eigen::Vector3d& working_point, double stated) {
+    Model other = model;
+    const double cost = solve_reduced(sections, other, true, std::numeric_limits<double>::infinity(), 100);
+    if (cost < kMuchBetter * mean_disagreement && std::abs(other.radius - model.radius) > kOtherRadius_mm)
+        return other.radius;
+    solve_points(sections, other, true);
+    const System system = accumulate(sections, other, true);
+    const Determination known = determination(system.information, other, working_point, true);
+    if (!std::isfinite(known.weakest)) return kNaN;
+    const NoiseLevels noise = noise_levels(sections, other, known.inverse, true);
+    const double sigma =
+        std::sqrt(covariance_of(sections, other, system, known.inverse, noise, stated, true)(9, 9));
+    const double told = std::max({kOtherRadius_mm, kScaleOfSensors * model.radius, kRadiusSigmas * sigma});
+    return std::abs(other.radius - model.radius) > told ? other.radius : kNaN;
 }
 
 }  // namespace
@@ -450,8 +458,9 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
                        std::sqrt(noise.centre_variance), std::sqrt(stated)));
     }
     SphereFit fit{used, used<0.5 * static_cast<double>(candidates), stated> 0, kNaN, model.radius};
-    if (!radius_free && noise.poses_disagree && result.rms_mm > kLooksAtRadius_mm)
-        fit.better_radius = better_radius(sections, model, mean_disagreement);
+    if (!radius_free && noise.poses_disagree)
+        fit.better_radius =
+            better_radius(sections, model, mean_disagreement, result.working_point_mm, stated);
     result.report.judgement = judge_sphere(fit, result);
     return result;
 }

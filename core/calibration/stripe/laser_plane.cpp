@@ -163,6 +163,9 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     result.covariance = solved->covariance * std::max(student * student, seen > 0 ? stated / seen : 0.0);
     result.rms_px = solved->rms_px;
     const double squares = solved->rms_px * solved->rms_px * count();
+    // What the pairs leave open by themselves; how far a doubted camera would move the pose is another matter.
+    const double open_mm = std::sqrt(result.covariance.topLeftCorner<3, 3>().trace());
+    const double open_deg = deg_from_rad(std::sqrt(result.covariance.bottomRightCorner<3, 3>().trace()));
     const CameraDoubt doubt = doubt_of_camera(camera, solved->camera_from_target, view, squares);
     if (doubt.tells) result.covariance += doubt.moves * doubt.moves.transpose();
     const double unexplained = !(stated > 0)                                   ? seen
@@ -207,15 +210,20 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     const double sigma_deg = deg_from_rad(std::sqrt(result.covariance.bottomRightCorner<3, 3>().trace()));
     const std::string without = left_out(report.poses);
     const char* more = "add pairs in the corners of the field of view, near and far";
-    if (!(sigma_mm < kOpenPose_mm) || !(sigma_deg < kOpenPose_deg)) {
+    if (!(open_mm < kOpenPose_mm) || !(open_deg < kOpenPose_deg)) {
         report.parameters.clear();
         report.covariance.resize(0, 0);
         return unless_swapped(
-            Text("the pairs leave the pose open (sigma {:.1f} mm, {:.1f} degrees)", sigma_mm, sigma_deg));
+            Text("the pairs leave the pose open (sigma {:.1f} mm, {:.1f} degrees)", open_mm, open_deg));
     }
+    const bool moved_far = open_mm < kUsablePose_mm && open_deg < kUsablePose_deg &&
+                           !(sigma_mm < kUsablePose_mm && sigma_deg < kUsablePose_deg);
     const Text pattern("the residuals have the form of a lens that bends otherwise ({:.2f} px)",
                        doubt.pattern_px);
-    const char* camera_cure = "give the camera as it was calibrated, with k1, k2, p1, p2 and k3";
+    const char* camera_cure =
+        "give the camera as it was calibrated, with k1, k2, p1, p2 and k3, and check that the positions' x "
+        "and z "
+        "are of one scale";
     if (swapped)
         report.judgement = row_first(*swapped);
     else if (doubt.tells && doubt.pattern_px > kPoorPattern_px)
@@ -232,7 +240,7 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     else if (count() < kFewPairs)
         report.judgement = {Verdict::usable, Text("{} pairs are few", count()),
                             "take 10 or more over the whole field of view"};
-    else if (doubt.tells && doubt.pattern_px > kUsablePattern_px)
+    else if (doubt.tells && (doubt.pattern_px > kUsablePattern_px || moved_far))
         report.judgement = {Verdict::usable, pattern, camera_cure};
     else if (misfit_px > kUsableMisfit_px)
         report.judgement = {Verdict::usable,

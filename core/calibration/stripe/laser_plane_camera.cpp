@@ -75,7 +75,7 @@ CameraDoubt doubt_of_camera(const CameraModel& camera, const Pose& pose, const C
     }
     doubt.pattern_px = std::sqrt(std::max(0.0, squares_px2 - least) / n);
     // A camera without any distortion is more often a camera whose distortion was left out.
-    constexpr double kOfBare = 0.05;
+    constexpr double kOfBare = 0.005;
     const bool bare = camera.k1 == 0 && camera.k2 == 0 && camera.k3 == 0 && camera.p1 == 0 && camera.p2 == 0;
     doubt.tells = doubt.pattern_px > kRounding_px &&
                   freed_chance(squares_px2, least, static_cast<double>(kFreed), freedom) <

@@ -10,8 +10,8 @@
 namespace seamwright {
 
 struct CameraDoubt {
-    bool tells = false;     // chance below kNoAccident (of a camera without distortion 5 %), and no rounding
-    double pattern_px = 0;  // rms over the pairs of what the freed camera takes away, per point
+    bool tells = false;  // chance below kNoAccident (of a camera without distortion 0.5 %), and no rounding
+    double pattern_px = 0;            // rms over the pairs of what the freed camera takes away, per point
     Vector6 moves = Vector6::Zero();  // of the pose when it is freed, tangent of pose.h
 };
 

@@ -9,9 +9,11 @@
 // touched, the plate was lifted at the stripe) is named and left out, never averaged in.
 //
 // Noise model: corners independent, one sigma in px; robot poses one sigma in mm and in rad, at the flange; stripe rows 0.2
-// mm with Huber's weight. The first three are estimated from the residuals (the last is fixed: rows of a frame are not
-// independent); the robot's are the stated ones where its repeatability is given and the residuals are not beyond chance
-// against it.
+// mm with Huber's weight, and one error of each frame's stripe as a whole (stripe_move.h). The first three and the last are
+// estimated from the residuals; the robot's are the stated ones where its repeatability is given and the residuals are not
+// beyond chance against it.
+//
+// Poor: a laser that moved against the camera between two frames (named).
 //
 // Good: six frames or more and three sigma of the working point within 0.5 mm; poor beyond 3 mm, or where the robot's motion
 // says that the plate is larger or smaller than stated (as of hand_eye.h).

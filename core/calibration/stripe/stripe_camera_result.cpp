@@ -288,6 +288,13 @@ std::string StripeCameraSolver::frames_off_plane() const {
 }
 
 Judgement StripeCameraSolver::verdict() const {
+    if (move_)
+        return {Verdict::poor,
+                Text("the laser or the camera moved between {} and {}: their stripes before and after lie "
+                     "{:.2f} mm "
+                     "apart",
+                     move_->last_before, move_->first_after, move_->apart_mm),
+                "hold laser and camera firmly together and take all frames again"};
     if (auto judged = undetermined()) return *judged;
     // Beyond what corners are read to, the model does not explain them.
     const double misfit = result_.sigma_px / std::max(corner_noise_px(data_.views), kLeastNoise_px);

@@ -7,6 +7,7 @@
 
 #include "core/calibration/stripe/stripe_camera.h"
 #include "core/calibration/stripe/stripe_line.h"
+#include "core/calibration/stripe/stripe_move.h"
 
 namespace seamwright::detail {
 
@@ -49,6 +50,9 @@ class StripeCameraSolver {
 
     void locate_stripes();
     std::vector<Eigen::Vector3d> points_of(std::size_t k, std::size_t choice, bool on_bow) const;
+    StripeOff off_plane(std::size_t k, const LaserPlane& plane) const;
+    void look_for_move();
+    double between_stripes_mm(const LaserPlane& plane) const;
     void refine_with_stripe();
 
     void measure();
@@ -84,6 +88,13 @@ class StripeCameraSolver {
     Model model_;
     std::vector<std::vector<PlateStripe>> lines_;  // per view
     std::vector<std::size_t> choice_;
+    std::vector<char>
+        one_laser_;  // per view: taken before the laser moved or after, where there are more; all if it did not
+    struct Move {
+        std::string last_before, first_after;
+        double apart_mm = 0;
+    };
+    std::optional<Move> move_;
     Text robot_note_, robot_cure_ = "turn the robot about two axes by 20 degrees or more";
     bool robot_as_stated_ = false;
 };

@@ -403,6 +403,7 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
     const Support support(pixels);
     fitted.map.state_places(fitted.samples, options.place_sigma_mm);
     state_noise(fitted, result);
+    fitted.map.state_rows(row_sigmas_mm(fitted.samples, width, height, result.noise_px));
     const double step = options.step_px != 0 ? options.step_px
                                              : suitable_step(fitted, support, width, height, result.noise_mm);
     result.interpolation_mm = interpolation_mm(fitted, step);

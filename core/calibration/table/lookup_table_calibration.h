@@ -7,7 +7,9 @@
 // p: polynomial of total degree 1 to 5 in px, the lens as far as it is smooth over the field. s: thin-plate
 // spline on knots spread over the samples, what is left locally, damped by a penalty on its bending.
 // Noise model: independent noise of the pixels, of one covariance over the image, estimated from the redundancy; where
-// the places' own sigma is stated and says more, as much as that gives in the image.
+// the places' own sigma is stated and says more, as much as that gives in the image. Where places stand in rows of one x or
+// one z, what a stage errs by at each row is a variance more, if the residuals of a camera
+// before a plane show it.
 //
 // A node is a hole where the samples do not support it: outside their convex hull by more than half a step
 // (or half the samples' spacing, when smaller), farther than two mean spacings from the nearest sample, on

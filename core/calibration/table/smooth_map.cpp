@@ -230,6 +230,38 @@ void SmoothMap::state_places(const Samples& s, double sigma_mm) {
         noise_ = stated / 2 * Eigen::Matrix2d::Identity();
 }
 
+void SmoothMap::set_rows(const Samples& s, const StageRows& rows) {
+    constexpr std::size_t kMostNumbers = 4'000'000;
+    by_rows_ = {};
+    row_sigma_mm_.resize(0);
+    const std::size_t all = rows[0].size() + rows[1].size();
+    if (all == 0 || all * s.pixel.size() > kMostNumbers) return;
+    for (MatrixXd& by : by_rows_)
+        by = MatrixXd::Zero(static_cast<Index>(s.pixel.size()), static_cast<Index>(all));
+    rows_of_x_ = static_cast<Index>(rows[0].size());
+    Index column = 0;
+    for (Index axis = 0; axis < 2; ++axis)
+        for (const auto& row : rows[static_cast<std::size_t>(axis)]) {
+            for (const std::size_t i : row) {
+                const Eigen::Vector3d q = inverse_ * s.laser[i].homogeneous();
+                const Vector2d moves =
+                    (inverse_.block<2, 1>(0, axis) - q.hnormalized() * inverse_(2, axis)) / q.z();
+                by_rows_[0](static_cast<Index>(i), column) = moves.x();
+                by_rows_[1](static_cast<Index>(i), column) = moves.y();
+            }
+            ++column;
+        }
+}
+
+void SmoothMap::state_rows(const std::array<double, 2>& sigma_mm) {
+    const Index all = by_rows_[0].cols();
+    row_sigma_mm_.resize(0);
+    if (all == 0 || !(std::max(sigma_mm[0], sigma_mm[1]) > 0)) return;
+    row_sigma_mm_.resize(all);
+    row_sigma_mm_.head(rows_of_x_).setConstant(sigma_mm[0]);
+    row_sigma_mm_.tail(all - rows_of_x_).setConstant(sigma_mm[1]);
+}
+
 SmoothMap::Known SmoothMap::known(const Vector2d& pixel) const {
     const Vector2d c = (pixel - mean_) / scale_;
     const Eigen::RowVectorXd powers = monomials(c, degrees_.back().degree), kernels = kernel(c);
@@ -262,15 +294,33 @@ SmoothMap::Known SmoothMap::known(const Vector2d& pixel) const {
             root * ((powers.head(k.poly.rows()) * k.poly + kernels * k.bend).transpose() - mean);
     }
     known.row *= student_;
+    if (row_sigma_mm_.size() > 0) {
+        Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(2, row_sigma_mm_.size());
+        for (const Candidate& k : candidates_) {
+            const Degree& d = degrees_[k.degree];
+            for (Index axis = 0; axis < 2; ++axis) {
+                const auto a = static_cast<std::size_t>(axis);
+                moved.row(axis) += k.weight * flat[k.degree].transpose() * d.flat_rows[a];
+                if (k.shrink.size() > 0)
+                    moved.row(axis) += k.weight *
+                                       bent[k.degree].cwiseProduct(k.shrink.cwiseAbs2()).transpose() *
+                                       d.bent_rows[a];
+            }
+        }
+        const Index at_rows = known.apart.cols();
+        known.apart.conservativeResize(2, at_rows + moved.cols());
+        known.apart.rightCols(moved.cols()) = moved * row_sigma_mm_.asDiagonal();
+    }
     return known;
 }
 
-bool SmoothMap::fit(const Samples& s, int least_degree, int most_degree) {
+bool SmoothMap::fit(const Samples& s, int least_degree, int most_degree, const StageRows& rows) {
     const auto n = static_cast<Index>(s.pixel.size());
     std::vector<Vector2d> places;
     MatrixXd y, columns, transform;
     if (!set_frame(s, places, y)) return false;
     choose_knots(places);
+    set_rows(s, rows);
     if (!spline_columns(places, columns, transform)) return false;
 
     // Every lens bends to the third degree: a lower one saves noise only where samples are few.
@@ -287,7 +337,11 @@ bool SmoothMap::fit(const Samples& s, int least_degree, int most_degree) {
         const MatrixXd r = qr.matrixQR().topRows(m).triangularView<Eigen::Upper>();
         if (!(r.diagonal().cwiseAbs().minCoeff() > kLeastRank * r.diagonal().cwiseAbs().maxCoeff())) break;
         const Modes modes(q, r, y, columns);
-        degrees_.push_back({degree, r, {}, {}});
+        degrees_.push_back({degree, r, {}, {}, {}, {}});
+        for (std::size_t axis = 0; axis < 2 && by_rows_[axis].cols() > 0; ++axis) {
+            degrees_.back().flat_rows[axis] = q.transpose() * by_rows_[axis];
+            degrees_.back().bent_rows[axis] = modes.modes.transpose() * by_rows_[axis];
+        }
         if (columns.size() > 0) {
             degrees_.back().cross = modes.mixed * modes.vectors;
             degrees_.back().rotate = transform * modes.vectors;

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -24,10 +25,14 @@ Samples chosen(const std::vector<LaserPair>& pairs, const std::vector<char>& use
 
 Eigen::Vector2d through(const Eigen::Matrix3d& h, const Eigen::Vector2d& p);
 
+// Samples of one x, and those of one z: a stage that goes there once errs for all of them alike.
+using StageRows = std::array<std::vector<std::vector<std::size_t>>, 2>;
+
 class SmoothMap {
   public:
-    // Degrees to choose from. False: too few samples, or a horizon between them.
-    bool fit(const Samples& s, int least_degree, int most_degree);
+    // Degrees to choose from. False: too few samples, or a horizon between them. Of `rows` it is kept how an error of each
+    // moves the map: state_rows() says how large these are (x, z).
+    bool fit(const Samples& s, int least_degree, int most_degree, const StageRows& rows = {});
 
     Eigen::Vector2d at(const Eigen::Vector2d& pixel) const {
         const Eigen::Vector3d q = h_ * corrected(pixel).homogeneous();
@@ -60,13 +65,15 @@ class SmoothMap {
         // Products of two rows, in units of noise(); as wide as a normal one that holds 95 % has to be where noise() is
         // estimated from few pairs.
         Eigen::VectorXd row;
-        Eigen::Matrix2Xd
-            apart;  // how far the candidates lie from their mean, by the root of their weight, px
+        // How far the candidates lie from their mean, by the root of their weight, px; then by how much a sigma of the
+        // stage's at each of its rows moves the map.
+        Eigen::Matrix2Xd apart;
         Eigen::Matrix2d with(const Known& other, const Eigen::Matrix2d& noise) const {
             return row.dot(other.row) * noise + apart * other.apart.transpose();
         }
     };
     Known known(const Eigen::Vector2d& pixel) const;
+    void state_rows(const std::array<double, 2>& sigma_mm);
     // The noise is at least what places of this sigma (mm along each axis) give in corrected px.
     void state_places(const Samples& s, double sigma_mm);
     const Eigen::Matrix2d& noise() const { return noise_; }  // covariance of a pair's miss(), px^2
@@ -95,6 +102,8 @@ class SmoothMap {
     struct Degree {
         int degree = 0;
         Eigen::MatrixXd r, cross, rotate;
+        std::array<Eigen::MatrixXd, 2> flat_rows,
+            bent_rows;  // of u and v: polynomial and modes by the stage's rows
     };
     // One stiffness at one degree.
     struct Candidate {
@@ -112,6 +121,10 @@ class SmoothMap {
     Eigen::VectorXd leverage_;
     Eigen::Matrix2d noise_ = Eigen::Matrix2d::Zero();
     double effective_ = 0;
+    // By the stage's error at each row, 1 mm: what the samples move by in u and v. Sigma of each row.
+    std::array<Eigen::MatrixXd, 2> by_rows_;
+    Eigen::Index rows_of_x_ = 0;
+    Eigen::VectorXd row_sigma_mm_;
 
     static Eigen::Index terms(int degree) { return (degree + 1) * (degree + 2) / 2; }
     static Eigen::RowVectorXd monomials(const Eigen::Vector2d& c, int degree) {
@@ -147,6 +160,7 @@ class SmoothMap {
     void try_stiffnesses(const Modes& m, const Eigen::MatrixXd& transform);
     double weight_of(const Candidate& c, Eigen::Index pairs) const;
     void average();
+    void set_rows(const Samples& s, const StageRows& rows);
 };
 
 }  // namespace seamwright::lookup_table

@@ -1,4 +1,5 @@
 #include "core/calibration/table/wrong_groups.h"
+#include "core/acceptance/distributions.h"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -7,6 +8,8 @@
 
 #include "core/calibration/camera/camera.h"
 #include "core/calibration/camera/f_test.h"
+#include "core/calibration/numbers.h"
+#include "core/calibration/statistics.h"
 
 namespace seamwright::lookup_table {
 
@@ -76,6 +79,16 @@ class PlaneFit {
     }
     double squares() const { return r_.squaredNorm(); }
     double freedom() const { return static_cast<double>(r_.size() - unknowns_); }
+    const VectorXd& residual() const { return r_; }
+    // By errors of these rows along an axis, 1 mm each, as far as the map does not follow them.
+    MatrixXd left_of(const std::vector<std::vector<std::size_t>>& rows, Eigen::Index axis) const {
+        MatrixXd moved = MatrixXd::Zero(r_.size(), static_cast<Eigen::Index>(rows.size()));
+        for (std::size_t k = 0; k < rows.size(); ++k)
+            for (const std::size_t i : rows[k])
+                moved.block<2, 1>(static_cast<Eigen::Index>(2 * i), static_cast<Eigen::Index>(k)) =
+                    slope_[i].col(axis);
+        return moved - q_ * (q_.transpose() * moved);
+    }
 
     // What these pairs' places are off by together (mm), that taken away takes most off the sum of squares; and how much.
     double best_shift(const std::vector<std::size_t>& group, Vector2d& shift_mm) const {
@@ -205,6 +218,52 @@ std::optional<WrongGroup> worst_row(const Samples& samples, const std::vector<Ro
 }
 
 }  // namespace
+
+StageRows stage_rows(const Samples& samples) {
+    return {rows_of(samples.laser, 0), rows_of(samples.laser, 1)};
+}
+
+std::array<double, 2> row_sigmas_mm(const Samples& samples, int width, int height, double noise_px) {
+    constexpr double kChance = 0.01, kLeastNoise_px2 = 1e-12;
+    constexpr std::size_t kMostNumbers = 4'000'000;
+    std::array<double, 2> sigma{};
+    const StageRows rows = stage_rows(samples);
+    const std::size_t all = rows[0].size() + rows[1].size();
+    if (all == 0 || all * samples.pixel.size() > kMostNumbers) return sigma;
+    for (const Eigen::Index unknowns : {kSimple, kRich}) {
+        PlaneFit fit(samples, width, height, unknowns);
+        if (!fit.solve(samples.laser) || fit.freedom() < kFewestFreedom) continue;
+        const std::array left{fit.left_of(rows[0], 0), fit.left_of(rows[1], 1)};
+        Eigen::Matrix3d shares = Eigen::Matrix3d::Identity();
+        Eigen::Vector3d sums(fit.squares(), 0, 0);
+        shares(0, 0) = fit.freedom();
+        std::array<double, 2> degrees{};
+        for (std::size_t a = 0; a < 2; ++a) {
+            if (rows[a].empty()) continue;
+            const auto at = static_cast<Eigen::Index>(a) + 1;
+            const MatrixXd own = left[a].transpose() * left[a];
+            sums(at) = (left[a].transpose() * fit.residual()).squaredNorm();
+            shares(at, 0) = shares(0, at) = own.trace();
+            shares(at, at) = own.squaredNorm();
+            degrees[a] = own.trace() * own.trace() / own.squaredNorm();
+        }
+        if (!rows[0].empty() && !rows[1].empty())
+            shares(1, 2) = shares(2, 1) = (left[0].transpose() * left[1]).squaredNorm();
+        const Eigen::Vector3d variances = shares.fullPivLu().solve(sums);
+        if (!variances.allFinite() || !(variances(0) < kAsNoise * kAsNoise * noise_px * noise_px)) continue;
+        const double rest = std::max(1.0, fit.freedom() - degrees[0] - degrees[1]);
+        for (std::size_t a = 0; a < 2; ++a) {
+            const auto at = static_cast<Eigen::Index>(a) + 1;
+            const double noise = std::max(variances(0), kLeastNoise_px2);
+            if (degrees[a] > 1 && variances(at) > 0 &&
+                f_upper(degrees[a], rest, sums(at) / shares(at, 0) / noise) < kChance)
+                sigma[a] = std::sqrt(variances(at)) * student_quantile(kUpper95, degrees[a]) /
+                           normal_quantile(kUpper95);
+        }
+        return sigma;
+    }
+    return sigma;
+}
 
 std::optional<WrongGroup> wrong_group(const Samples& samples, int width, int height, double noise_px) {
     std::vector<Row> rows;

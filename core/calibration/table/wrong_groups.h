@@ -19,6 +19,14 @@ struct WrongGroup {
     Eigen::Vector2d shift_mm;  // by which they are off
 };
 
+// Samples that stand in rows of one x, or one z, three and more in each of four and more; in the order of it.
+StageRows stage_rows(const Samples& samples);
+
+// What a stage errs by at each x and at each z, for all samples there alike (mm, as wide as a sigma that is known has to be):
+// the residuals' products with the rows, and their squares, are the noise's share and that of the rows of x and of z. Zero
+// where chance gives as much, or for a sensor of another kind. `noise_px` as of wrong_group().
+std::array<double, 2> row_sigmas_mm(const Samples& samples, int width, int height, double noise_px);
+
 // The worst one. `noise_px`: sigma of a coordinate of a pixel by the map that bends.
 std::optional<WrongGroup> wrong_group(const Samples& samples, int width, int height, double noise_px);
 

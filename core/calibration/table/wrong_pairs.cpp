@@ -8,6 +8,7 @@
 #include <random>
 
 #include "core/calibration/camera/camera.h"
+#include "core/calibration/table/wrong_groups.h"
 #include "core/numbers.h"
 
 namespace seamwright::lookup_table {
@@ -159,7 +160,7 @@ bool fit_without_wrong(const std::vector<LaserPair>& pairs, const std::vector<ch
         if (!back) break;
     }
     const Samples s = chosen(pairs, used);
-    return s.pixel.size() >= 6 && map.fit(s, 1, kHighestDegree);
+    return s.pixel.size() >= 6 && map.fit(s, 1, kHighestDegree, stage_rows(s));
 }
 
 }  // namespace seamwright::lookup_table

@@ -63,8 +63,10 @@ Expected<void> parse_target(const json& data, NozzleData& set) {
         SEAM_TRY(auto radius, json_number(*field, "radius_mm", "target"));
         set.target.radius_mm = radius;
     }
-    SEAM_TRY(auto radius_sigma, json_number_or(*field, "radius_sigma_mm", 0, "target"));
-    set.target.radius_sigma_mm = radius_sigma;
+    if (given_field(*field, "radius_sigma_mm")) {
+        SEAM_TRY(auto radius_sigma, json_number(*field, "radius_sigma_mm", "target"));
+        set.target.radius_sigma_mm = radius_sigma;
+    }
     const json *matrix = given_field(*field, "covariance_mm2"), *sigma = given_field(*field, "sigma_mm");
     if (matrix && sigma)
         return input_error("covariance_mm2 and sigma_mm say the same", "target", "give one of them");

@@ -26,9 +26,6 @@ struct ChainedTable {
     const char* table;
     std::string_view kind;
 };
-constexpr std::array<const char*, 15> kOfProject{
-    "project",    "requirements", "part",       "sensors", "robots",      "calibrations", "spots", "regions",
-    "panel_jobs", "line",         "part_types", "elastic", "drift_watch", "fixture",      "fleet"};
 constexpr std::array<ChainedTable, 5> kByRow{{{"setups", "setup"},
                                               {"evidence", "evidence"},
                                               {"drift_points", "drift point"},
@@ -192,7 +189,7 @@ using Found = std::map<std::string, Digest>;
 
 Expected<Found> found_in_project(Database& db) {
     Found found;
-    for (const char* table : kOfProject)
+    for (const char* table : kProjectTables)
         SEAM_OK(every_row(db, table, [&](const std::string& key, const Digest& digest) -> Expected<void> {
             found.emplace(subject_of(table, key), digest);
             return {};
@@ -294,7 +291,7 @@ Expected<void> begin_chain(Database& db, std::int32_t from_version) {
         return append_chain(db, {}, kind, subject, digest);
     };
     SEAM_TRY(const std::int64_t version, db.integer("PRAGMA user_version"));
-    for (const char* table : kOfProject) {
+    for (const char* table : kProjectTables) {
         if (columns_of(table).since > version) continue;  // a later migration makes it, empty
         SEAM_OK(every_row(db, table, [&](const std::string& key, const Digest& digest) {
             return add(kProject, subject_of(table, key), digest);

@@ -40,9 +40,14 @@ std::vector<std::string> ids_of(const std::vector<T>& items) {
     return ids;
 }
 
+struct RowChanges {
+    const std::set<std::string>& kept;
+    std::vector<RowChange> made = {};
+};
+
 // Rows that are not in `ids` go.
 Expected<void> delete_others(Database& db, const char* table, const std::vector<std::string>& ids,
-                             std::vector<RowChange>& changes) {
+                             RowChanges& changes) {
     SEAM_TRY(auto list, db.prepare(fmt::format("SELECT id FROM {}", table)));
     const std::set<std::string> keep(ids.begin(), ids.end());
     std::vector<std::string> gone;
@@ -53,9 +58,10 @@ Expected<void> delete_others(Database& db, const char* table, const std::vector<
     }
     SEAM_TRY(auto remove, db.prepare(fmt::format("DELETE FROM {} WHERE id = ?", table)));
     for (const std::string& id : gone) {
+        if (changes.kept.count(subject_of(table, id))) continue;
         remove.bind(1, id);
         SEAM_OK(remove.run());
-        changes.push_back({table, id, true, {}});
+        changes.made.push_back({table, id, true, {}});
     }
     return {};
 }
@@ -102,8 +108,8 @@ Expected<std::string> body_of(Database& db, const char* table, const std::string
 
 // Runs a statement that writes the row `id` where it differs from what is stored, and says so.
 template <class Run>
-Expected<void> noting(Database& db, const char* table, const std::string& id, std::vector<RowChange>& changes,
-                      Run run) {
+Expected<void> noting(Database& db, const char* table, const std::string& id, RowChanges& changes, Run run) {
+    if (changes.kept.count(subject_of(table, id))) return {};
     const bool has_body = std::string_view(table) != "project";
     std::string before;
     if (has_body) {
@@ -117,14 +123,14 @@ Expected<void> noting(Database& db, const char* table, const std::string& id, st
         SEAM_TRY(const auto after, body_of(db, table, id));
         change.note = difference_of(before, after);
     }
-    changes.push_back(std::move(change));
+    changes.made.push_back(std::move(change));
     return {};
 }
 
 // Writes each row that differs from what is stored: `columns` after id and position.
 template <class T, class Bind>
 Expected<void> save_rows(Database& db, const char* table, const std::vector<std::string>& columns,
-                         const std::vector<T>& items, std::vector<RowChange>& changes, Bind bind) {
+                         const std::vector<T>& items, RowChanges& changes, Bind bind) {
     SEAM_OK(delete_others(db, table, ids_of(items), changes));
     std::string names = "id, position", values = "?1, ?2", sets = "position = excluded.position",
                 differs = "position IS NOT excluded.position";
@@ -196,7 +202,7 @@ Expected<void> check_all_ids(Database& db, const Project& project) {
 }
 
 // Of each there is one row.
-Expected<void> save_project_and_part(Database& db, const Project& project, std::vector<RowChange>& changes) {
+Expected<void> save_project_and_part(Database& db, const Project& project, RowChanges& changes) {
     const char* name_row = R"(
         INSERT INTO project (id, name, created_utc, checksum) VALUES (1, ?1, ?2, row_checksum(1, ?1, ?2))
         ON CONFLICT (id) DO UPDATE SET name = excluded.name, checksum = row_checksum(id, excluded.name, created_utc)
@@ -228,7 +234,7 @@ Expected<void> save_project_and_part(Database& db, const Project& project, std::
     return {};
 }
 
-Expected<void> save_devices(Database& db, const Project& project, std::vector<RowChange>& changes) {
+Expected<void> save_devices(Database& db, const Project& project, RowChanges& changes) {
     const auto device = [](const char* kind) {
         return [kind](Statement& s, const auto& item) -> Expected<void> {
             SEAM_TRY(auto text, row_text(item, fmt::format("{} {}", kind, item.id), kRow));
@@ -253,7 +259,7 @@ Expected<void> save_devices(Database& db, const Project& project, std::vector<Ro
     return {};
 }
 
-Expected<void> save_spots(Database& db, const Project& project, std::vector<RowChange>& changes) {
+Expected<void> save_spots(Database& db, const Project& project, RowChanges& changes) {
     SEAM_OK(save_rows(db, "spots", {"sensor_id", "robot_id", "body", "reference_profile", "template_profile"},
                       project.spots, changes, [](Statement& s, const Spot& spot) -> Expected<void> {
                           SEAM_TRY(auto text, row_text(spot, "spot " + spot.id, kRow));
@@ -275,7 +281,7 @@ Expected<void> save_spots(Database& db, const Project& project, std::vector<RowC
     return {};
 }
 
-Expected<void> save_regions(Database& db, const Project& project, std::vector<RowChange>& changes) {
+Expected<void> save_regions(Database& db, const Project& project, RowChanges& changes) {
     SEAM_OK(save_rows(db, "regions", {"frame_name", "body"}, project.regions, changes,
                       [](Statement& s, const Region& region) -> Expected<void> {
                           SEAM_TRY(auto text, row_text(region, "region " + region.id, kRow));
@@ -294,7 +300,7 @@ Expected<void> save_regions(Database& db, const Project& project, std::vector<Ro
 }
 
 // What stands around spots and regions: part types, the line, how parts bend, the drift watch, the fixture, the fleet.
-Expected<void> save_surroundings(Database& db, const Project& project, std::vector<RowChange>& changes) {
+Expected<void> save_surroundings(Database& db, const Project& project, RowChanges& changes) {
     SEAM_OK(save_rows(db, "part_types", {"body"}, project.part_types, changes,
                       [](Statement& s, const PartType& type) -> Expected<void> {
                           SEAM_TRY(auto text, row_text(type, "part type " + type.id, kRow));
@@ -340,17 +346,18 @@ Expected<void> save_surroundings(Database& db, const Project& project, std::vect
 
 }  // namespace
 
-Expected<std::vector<RowChange>> save_rows_of(Database& db, const Project& project) {
+Expected<std::vector<RowChange>> save_rows_of(Database& db, const Project& project,
+                                              const std::set<std::string>& kept) {
     SEAM_OK(check_all_ids(db, project));
-    std::vector<RowChange> changes;
+    RowChanges changes{kept};
     for (const auto save : {save_project_and_part, save_devices, save_spots, save_regions, save_surroundings})
         SEAM_OK(save(db, project, changes));
-    return changes;
+    return std::move(changes.made);
 }
 
 Expected<void> chain_changes(Database& db, const std::string& person, const std::vector<RowChange>& changes) {
     for (const RowChange& change : changes) {
-        const std::string subject = fmt::format("{} {}", change.table, change.id);
+        const std::string subject = subject_of(change.table, change.id);
         if (change.gone) {
             SEAM_OK(append_chain(db, person, "project", subject, {}, change.note));
             continue;
@@ -362,10 +369,7 @@ Expected<void> chain_changes(Database& db, const std::string& person, const std:
 }
 
 Expected<Project> load_rows_of(Database& db) {
-    for (const char* table :
-         {"project", "requirements", "part", "sensors", "robots", "calibrations", "spots", "regions",
-          "panel_jobs", "line", "part_types", "elastic", "drift_watch", "fixture", "fleet"})
-        SEAM_OK(check_rows(db, table));
+    for (const char* table : kProjectTables) SEAM_OK(check_rows(db, table));
     Project project;
     std::vector<DriftWatch> drift;
     std::vector<Fixture> fixture;

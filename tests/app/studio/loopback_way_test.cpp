@@ -247,6 +247,7 @@ TEST(LoopbackWay, FromAnEmptyProjectToAPushedPart) {
         std::printf("pushed: %.3f mm beside the part at worst\n", worst);
         EXPECT_LT(worst, 0.3);
         print(chapters, watch.freezes());
+        ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
         window.close();
     }
     fs::remove_all(folder);

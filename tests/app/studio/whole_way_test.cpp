@@ -266,6 +266,7 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
 
         me.shortcut(Qt::Key_S);
         ASSERT_TRUE(me.wait([&] { return !desk.modified(); }));
+        ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
         window.close();
     }
     // The runner without a screen.

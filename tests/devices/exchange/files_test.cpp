@@ -62,6 +62,25 @@ TEST(WriteTextFile, ALinkStaysAndItsFileIsReplacedAsAWhole) {
     EXPECT_TRUE(fs::is_symlink(folder.path() / "round"));
 }
 
+// `export a.seam --out a.seam` must not cost the project.
+TEST(WriteTextFile, NeverTakesThePlaceOfADatabase) {
+    TemporaryFolder folder;
+    const fs::path project = folder.path() / "a.seam", link = folder.path() / "link",
+                   text = folder.path() / "b.txt";
+    const std::string database = std::string("SQLite format 3\0", 16) + "and its pages";
+    std::ofstream(project, std::ios::binary) << database;
+    fs::create_symlink("a.seam", link);
+    for (const fs::path& path : {project, link}) {
+        const auto refused = write_text_file(path, "{}");
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().kind, ErrorKind::input);
+        EXPECT_THAT(refused.error().sentence(), HasSubstr("is a project or a recording"));
+        EXPECT_EQ(read(path), database);
+    }
+    std::ofstream(text, std::ios::binary) << "SQLite format";  // shorter than a database's header
+    EXPECT_TRUE(write_text_file(text, "{}"));
+}
+
 TEST(WriteTextFile, AFifoIsWrittenThrough) {
     TemporaryFolder folder;
     const fs::path fifo = folder.path() / "fifo";

@@ -26,6 +26,30 @@ TEST(FrameCounter, WrapsAndRestarts) {
     EXPECT_EQ(zero.sequence(1), 2U);
 }
 
+TEST(FrameCounter, TheFirstNumberShowsWhatWasLostBeforeIt) {
+    FrameCounter c;
+    c.restart(true);
+    EXPECT_EQ(c.sequence(3), 2U);
+    EXPECT_EQ(c.lost_at_start(), 2U);
+    EXPECT_EQ(c.sequence(4), 3U);
+    c.restart(true);
+    EXPECT_EQ(c.unnumbered(), 4U);
+    EXPECT_EQ(c.sequence(1), 4U);
+    EXPECT_EQ(c.lost_at_start(), 0U);
+    c.restart(true);
+    EXPECT_EQ(c.sequence(2), 6U) << "it has begun at 1 before: it does not count on";
+    EXPECT_EQ(c.lost_at_start(), 1U);
+    FrameCounter on;  // counts on from stream to stream
+    on.restart(true);
+    EXPECT_EQ(on.sequence(5000), 0U) << "long on its way";
+    on.restart(true);
+    EXPECT_EQ(on.sequence(5001), 1U);
+    FrameCounter usb;
+    usb.restart(false);
+    EXPECT_EQ(usb.sequence(3), 0U);
+    EXPECT_EQ(usb.lost_at_start(), 0U);
+}
+
 struct Camera {
     TriggerPairing pairing;
     std::int64_t time = 0;

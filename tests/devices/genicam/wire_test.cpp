@@ -2,6 +2,7 @@
 // interface.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <map>
 #include <thread>
@@ -167,7 +168,9 @@ TEST_F(Wire, FeaturesWithTheCamerasRanges) {
     EXPECT_NE(sentence({{"features", {{"Focus", 3}}}}).find("no feature Focus"), std::string::npos);
     EXPECT_NE(sentence({{"features", {{"ExposureTime", 2e7}}}}).find("ExposureTime"), std::string::npos);
     EXPECT_NE(sentence({{"chunks", {"Timestamp"}}}).find("no chunks"), std::string::npos);
-    EXPECT_EQ(sentence({{"features", {{"Gain", 3.5}, {"AcquisitionFrameRateEnable", false}}}}), "accepted");
+    EXPECT_EQ(sentence({{"region", {{"x", 0}, {"width", 320}}},
+                        {"features", {{"Gain", 3.5}, {"AcquisitionFrameRateEnable", false}}}}),
+              "accepted");
 }
 
 TEST_F(Wire, SoftwareTriggersCarryTheirSpot) {
@@ -266,6 +269,101 @@ TEST_F(Wire, TheRobotsTriggersAreLineOne) {
     const auto frame = (*sensor)->wait_next(3s);
     ASSERT_TRUE(frame) << frame.error().sentence();
     EXPECT_EQ((*frame)->spot_id, "x");
+}
+
+// Of a pass of five: a first frame that is lost leaves the first spot without measurement, not all the others with
+// that of another.
+TEST_F(Wire, AFirstFrameThatIsLostIsToldOnATriggerLine) {
+    auto camera = serve(cell_);
+    ASSERT_TRUE(camera) << camera.error().sentence();
+    auto sensor = open({{"hardware_trigger", true}});
+    ASSERT_TRUE(sensor) << sensor.error().sentence();
+    for (const int lost : {1, 0, 1}) {  // the numbers begin anew with each
+        ASSERT_TRUE((*sensor)->start());
+        if (lost) (*camera)->wire().fail_next(WireFault::lost);
+        cell_->start_moves(moves(5));
+        std::uint64_t before = 0;
+        for (int i = 0; i < 5; ++i) {
+            ASSERT_TRUE(cell_->next_trigger());
+            std::this_thread::sleep_for(20ms);
+        }
+        for (int i = 0; i < 5; ++i) {
+            const auto frame = (*sensor)->wait_next(3s);
+            ASSERT_TRUE(frame) << i << ": " << frame.error().sentence();
+            EXPECT_EQ((*frame)->status, i < lost ? FrameStatus::incomplete : FrameStatus::ok) << i;
+            EXPECT_TRUE(i == 0 || (*frame)->sequence == before + 1);
+            before = (*frame)->sequence;
+        }
+        EXPECT_FALSE((*sensor)->wait_next(20ms));
+        (*sensor)->stop();
+    }
+    EXPECT_EQ((*sensor)->counters().lost, 2U);
+}
+
+// As a stranger does before we come.
+void write_register(std::uint32_t address, std::uint32_t value) {
+    auto socket = UdpSocket::bind("127.0.0.1", 0);
+    ASSERT_TRUE(socket);
+    std::vector<std::byte> packet;
+    for (const int b : {0x42, 1, 0, 0x82, 0, 8, 0, 1}) packet.push_back(static_cast<std::byte>(b));
+    for (const std::uint32_t word : {address, value})
+        for (int shift = 24; shift >= 0; shift -= 8)
+            packet.push_back(static_cast<std::byte>(word >> shift & 0xFF));
+    ASSERT_TRUE(socket->send_to(packet, {camera_address, kGvcpPort}));
+    std::array<std::byte, 64> answer;
+    Endpoint from;
+    ASSERT_TRUE(socket->receive(answer, from, 3s));
+    ASSERT_EQ(answer[1], std::byte{0}) << "refused";
+}
+
+TEST_F(Wire, AMovedImageIsRefusedUnlessTheSettingsSayIt) {
+    constexpr std::uint32_t kHeight = 0x104, kOffsetY = 0x134;
+    auto camera = serve(cell_);
+    ASSERT_TRUE(camera) << camera.error().sentence();
+    write_register(kHeight, 126);
+    EXPECT_TRUE(open()) << "a cut at the far side moves nothing";
+    write_register(kOffsetY, 2);
+    auto sensor = open();
+    ASSERT_FALSE(sensor);
+    EXPECT_NE(sensor.error().sentence().find("OffsetY is 2"), std::string::npos) << sensor.error().sentence();
+    EXPECT_TRUE(open({{"region", {{"y", 2}}}}));
+    EXPECT_TRUE(open({{"region", {{"y", 0}, {"height", 128}}}}));
+    EXPECT_TRUE(open()) << "and now it is whole again";
+}
+
+TEST_F(Wire, AFrameOfAnotherPartOfTheSensorIsCorrupt) {
+    auto camera = serve(cell_);
+    ASSERT_TRUE(camera) << camera.error().sentence();
+    auto sensor = open();
+    ASSERT_TRUE(sensor) << sensor.error().sentence();
+    ASSERT_TRUE((*sensor)->start());
+    for (const bool moved : {false, true, false}) {
+        if (moved) (*camera)->wire().fail_next(WireFault::moved);
+        ASSERT_TRUE((*sensor)->trigger("a"));
+        const auto frame = (*sensor)->wait_next(3s);
+        ASSERT_TRUE(frame) << frame.error().sentence();
+        EXPECT_EQ((*frame)->status, moved ? FrameStatus::corrupt : FrameStatus::ok);
+        EXPECT_EQ((*frame)->image.empty(), moved);
+    }
+    EXPECT_EQ((*sensor)->counters().damaged, 1U);
+}
+
+TEST(WireArming, ACameraThatDoesNotArmIsNotTriggered) {
+    WireCameraSettings s;
+    s.width = 64;
+    s.height = 48;
+    s.address = kFreeAddress;
+    auto camera = WireCamera::open(s);
+    ASSERT_TRUE(camera) << camera.error().sentence();
+    camera_address = (*camera)->address();
+    auto sensor = open();
+    ASSERT_TRUE(sensor) << sensor.error().sentence();
+    const auto started = (*sensor)->start();  // nobody draws
+    ASSERT_FALSE(started);
+    EXPECT_NE(started.error().sentence().find("does not arm within 3000 ms"), std::string::npos)
+        << started.error().sentence();
+    (*camera)->set_ready(true);
+    EXPECT_TRUE((*sensor)->start());
 }
 
 TEST_F(Wire, FreeRunning) {

@@ -96,13 +96,45 @@ TEST_F(Line, AStartThatGoesEarlyGivesThePartUpAndItsResultStays) {
     EXPECT_TRUE(handshake->given_up());
     EXPECT_EQ(bits(), "-b-");
     ends(LineResult::not_taken);
-    EXPECT_EQ(bits(), "--d");
+    EXPECT_EQ(bits(), "r-d") << "a line that waits for ready comes to it";
     start(false);
-    EXPECT_EQ(bits(), "--d") << "the line had no chance to see it";
+    EXPECT_EQ(bits(), "r-d") << "the line had no chance to see it";
     start(true);
     EXPECT_TRUE(taken());
     EXPECT_FALSE(handshake->given_up());
     EXPECT_EQ(bits(), "-b-");
+}
+
+TEST_F(Line, APartThatEndsInAnOutageIsAnsweredAfterIt) {
+    for (const bool dropped : {false, true}) {
+        restart({.line_starts = true});
+        start(false);
+        start(true);
+        ASSERT_TRUE(taken());
+        handshake->lost();
+        ends(LineResult::corrected);
+        EXPECT_EQ(bits(), "--d");
+        start(!dropped);
+        EXPECT_EQ(bits(), dropped ? "r-d" : "--d");
+        if (!dropped) {
+            start(false);
+            EXPECT_EQ(bits(), "r--");
+        }
+        start(true);
+        EXPECT_TRUE(taken());
+    }
+}
+
+// The answer had been seen: start 0 is the last step, whenever it is heard.
+TEST_F(Line, AStartThatGoesInAnOutageAfterDoneEndsThePart) {
+    start(false);
+    start(true);
+    ASSERT_TRUE(taken());
+    ends(LineResult::corrected);
+    EXPECT_EQ(bits(), "--d");
+    handshake->lost();
+    start(false);
+    EXPECT_EQ(bits(), "r--");
 }
 
 TEST_F(Line, ACallThatNobodyFollowsIsAnswered) {

@@ -39,6 +39,7 @@ class Plc {
         words_[address] = value;
     }
     std::atomic<Mood> mood{Mood::sound};
+    std::atomic<int> end = 65536;  // of its memory
     // Whether `done` (at 1004 of the test's table) was ever written before the region's words that belong to it.
     std::atomic<bool> too_early{false};
 
@@ -102,6 +103,7 @@ class Plc {
             return answer;
         }
         if (pdu[0] != 16) return refuse(1);
+        if (address + count > end) return refuse(2);
         if (count > 123 || pdu.size() != 6u + 2u * static_cast<unsigned>(count)) return refuse(3);
         for (int i = 0; i < count; ++i)
             words_[address + i] = static_cast<std::uint16_t>(at(pdu, 6 + 2 * static_cast<std::size_t>(i)));
@@ -221,6 +223,30 @@ TEST_F(ModbusClient, SurvivesWhateverAPlcAnswers) {
         plc->mood = Mood::sound;
     }
     EXPECT_TRUE(soon([&] { return link->connected(); }));
+}
+
+// What an earlier station left is no region of this one.
+TEST_F(ModbusClient, RegionsOfAnEarlierStationGo) {
+    for (const bool small : {false, true}) {
+        link.reset();
+        plc.emplace();
+        plc->end = small ? 1020 + 2 * 32 : 65536;
+        plc->set(1020, 1);
+        plc->set(1052, 2);
+        poll();
+        EXPECT_TRUE(soon([&] { return plc->word(1002) == 1; })) << "ready";
+        EXPECT_EQ(plc->word(1020), 0);
+        EXPECT_EQ(plc->word(1052), 0);
+        EXPECT_EQ(notices(), "");
+    }
+}
+
+TEST_F(ModbusClient, AnExceptionIsAnAnswer) {
+    plc->mood = Mood::exceptions;
+    poll();
+    std::string said;
+    EXPECT_TRUE(soon([&] { return !(said += notices()).empty(); }));
+    EXPECT_THAT(said, HasSubstr("refuses the words at read_address or write_address"));
 }
 
 TEST_F(ModbusClient, GoesAtOnceWhileThePlcIsAway) {

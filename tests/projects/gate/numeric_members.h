@@ -101,7 +101,7 @@ inline void numbers(const NumberVisitor& visit, const std::string& path, GateSpo
 inline void numbers(const NumberVisitor& visit, const std::string& path, GateRequest& v) {
     auto& [region, correction, spots, workobject, part, since, now_ns, mode, tells_mode, required_mode,
            now_utc, age_days, nozzle_sigma, nozzle_trouble, other_frames, frame_now, frame_trouble,
-           of_other_types, drift_trouble] = v;
+           of_other_types, drift_trouble, project_trouble] = v;
     numbers(visit, path + "region", region);
     numbers(visit, path + "correction", correction);
     numbers(visit, path + "spots", spots);

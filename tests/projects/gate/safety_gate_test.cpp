@@ -202,6 +202,8 @@ std::vector<Refusal> refusals() {
         {"NozzleTooUnsure", [](R r) { r.nozzle_sigma_mm = 0.2; }, "is over the region's limit"},
         {"NozzleNotKnown", [](R r) { r.nozzle_sigma_mm = -0.1; }, "sigma of the nozzle is not known"},
         {"KnockedReference", [](R r) { r.drift_trouble = "stopped by a step"; }, "stopped by a step"},
+        {"ProjectChanged", [](R r) { r.project_trouble = "regions R1 was changed"; },
+         "regions R1 was changed"},
         {"NozzleStale", [](R r) { r.nozzle_trouble = "nozzle is older"; }, "nozzle is older"},
         {"CalibrationWithoutDate", [](R r) { r.spots[1].calibrated_utc.clear(); }, "has no date"},
         {"CalibrationOfYesterday", [](R r) { r.spots[1].calibrated_utc = "yesterday"; }, "has no date"},

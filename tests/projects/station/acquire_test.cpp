@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <deque>
+#include <random>
 
 #include "devices/silence.h"
 #include "projects/measure/measure.h"
@@ -110,6 +111,89 @@ TEST_F(WiredSensor, AnExposureWithoutTriggerFailsTheRun) {
     const auto complete = paired.finish();
     ASSERT_FALSE(complete);
     EXPECT_THAT(complete.error().sentence(), HasSubstr("more often than the robot fired"));
+}
+
+// One pulse too many, noticed by nobody before: the last trigger's own frame comes when the pass is over.
+TEST_F(WiredSensor, AFrameStillOnItsWayAtTheEndIsWaitedFor) {
+    constexpr int kLatencyMs = 60;
+    for (std::uint64_t k = 1; k < 4; ++k) arrives(k, 1e-3 * kLatencyMs);
+    for (int k = 0; k < 3; ++k) ASSERT_TRUE(at("S"));
+    const auto begun = std::chrono::steady_clock::now();
+    EXPECT_CALL(sensor, wait_next).WillOnce([&](std::chrono::milliseconds most) -> Expected<FramePtr> {
+        EXPECT_LE(most, std::chrono::milliseconds(kLatencyMs + 150)) << "of every part's time";
+        if (most < std::chrono::milliseconds(kLatencyMs)) return device_error(ErrorCode::silence, kNoAnswer);
+        arrives(4);
+        return frames.back();
+    });
+    EXPECT_FALSE(paired.finish());
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(1));
+}
+
+// Twelve spots, the robot's word up to 60 ms late, the sensor's clock of another beginning, its frames up to `late_ms`
+// late on the way. Answers the spot at which the run fails, 0 for none.
+class WiredPass : public WiredSensor {
+  protected:
+    int fails_at(std::mt19937& random, double late_ms, int extra_before, bool scaled_clock = false) {
+        TriggeredFrames fresh(sensor, setup);
+        frames.clear();
+        std::uniform_real_distribution<double> word(0, 60), way(20, 20 + late_ms), travel(500, 1500);
+        std::vector<double> triggers;
+        for (double t = 0; triggers.size() < 12; t += travel(random)) triggers.push_back(t);
+        std::vector<double> exposed = triggers;
+        if (extra_before > 0)
+            exposed.insert(exposed.begin() + extra_before,
+                           triggers[static_cast<std::size_t>(extra_before) - 1] + 30);
+        const std::int64_t begin = now_ns();
+        const auto ns = [](double ms) { return static_cast<std::int64_t>(1e6 * ms); };
+        for (std::size_t k = 0; k < triggers.size(); ++k) {
+            auto frame = std::make_shared<Frame>();
+            frame->sequence = k;
+            frame->host_time_ns = begin + ns(exposed[k] + way(random));
+            frame->device_time_ns = ns(5e6 + exposed[k]) / (scaled_clock ? 8 : 1);
+            frames.push_back(frame);
+            const TriggerEvent event{"S", begin + ns(triggers[k] + word(random)), std::nullopt};
+            if (!fresh.at(event, kSoon, {}, nullptr)) return static_cast<int>(k) + 1;
+        }
+        return 0;
+    }
+};
+
+TEST_F(WiredPass, AnExtraPulseShowsInTheTimes) {
+    std::mt19937 random(7);
+    int seen = 0;
+    for (int run = 0; run < 200; ++run) seen += fails_at(random, 30, 1 + run % 9) > 0;
+    EXPECT_GE(seen, 198);
+}
+
+TEST_F(WiredPass, HonestTimesFailNoRun) {
+    std::mt19937 random(8);
+    int failed = 0;
+    for (int run = 0; run < 200; ++run)
+        failed += (fails_at(random, 30, 0) > 0) + (fails_at(random, 900, 0) > 0) +  // a busy machine
+                  (fails_at(random, 30, 0, true) > 0);                              // ticks that are no ns
+    EXPECT_EQ(failed, 0);
+}
+
+TEST(FiredNear, APoseThatCannotBeTheSpotFailsTheRun) {
+    const Spot spot = sample_project().spots.at(0);
+    const auto fired = [&](const Pose& base_from_flange) {
+        return fired_near({spot.id, 1, base_from_flange}, spot);
+    };
+    const auto moved = [&](double mm, double deg) {
+        Pose p = spot.base_from_flange;
+        p.translation().y() += mm;
+        p.rotate(Eigen::AngleAxisd(rad_from_deg(deg), Eigen::Vector3d::UnitX()));
+        return p;
+    };
+    EXPECT_TRUE(fired_near({spot.id, 1, std::nullopt}, spot));
+    EXPECT_TRUE(fired(moved(0, 0)));
+    EXPECT_TRUE(fired(moved(-299, 29)));
+    EXPECT_FALSE(fired(moved(301, 0)));
+    EXPECT_FALSE(fired(moved(0, -31)));
+    const auto zero = fired(moved(1000, 0));
+    ASSERT_FALSE(zero);
+    EXPECT_THAT(zero.error().sentence(), HasSubstr("robot " + spot.robot_id));
+    EXPECT_THAT(zero.error().sentence(), HasSubstr("1000 mm"));
 }
 
 TEST_F(WiredSensor, AFrameFarFromItsTriggerFailsTheRun) {

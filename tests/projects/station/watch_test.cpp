@@ -2,9 +2,13 @@
 
 #include "projects/station/watch.h"
 
+#include <fmt/chrono.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <ctime>
+
+#include "projects/measure/nozzle.h"
 #include "tests/projects/fake_cell.h"
 #include "tests/projects/sample_project.h"
 
@@ -232,6 +236,61 @@ TEST_F(Watching, KeepsOnlySoManyRuns) {
     ASSERT_EQ(runs->size(), 2u);
     EXPECT_EQ(runs->at(0).part_id, "CAR-4");
     EXPECT_EQ(runs->at(1).part_id, "CAR-5");
+}
+
+// Another program's edits: of an own connection.
+void edit_file(const std::filesystem::path& path, const std::function<void(Project&)>& change) {
+    auto file = ProjectFile::open(path);
+    ASSERT_TRUE(file) << file.error().sentence();
+    Project project = file->load().value();
+    change(project);
+    const auto saved = file->save(project);
+    ASSERT_TRUE(saved) << saved.error().sentence();
+}
+
+TEST_F(Watching, ACollisionThatIsMarkedMeanwhileRefusesTheNextPart) {
+    edit_file(folder / "cell.seam", [](Project& p) {
+        const std::time_t yesterday = std::time(nullptr) - 24 * 3600;  // what is of this second is not older
+        for (Calibration& c : p.calibrations)
+            c.created_utc = fmt::format("{:%FT%TZ}", fmt::gmtime(yesterday));
+        ASSERT_TRUE(mark_collision(p, "R1", {}));
+    });
+    part("CAR-1");
+    options.parts = 1;
+    auto counts = watch(*station, options);
+    ASSERT_TRUE(counts) << counts.error().sentence();
+    EXPECT_EQ(counts->refused, 1);
+    EXPECT_EQ(cell->writes, 0);
+    EXPECT_THAT(told, testing::Contains("warning project"));
+    EXPECT_THAT(texts, HasSubstr("robots R1 was changed meanwhile by another program: from now on"));
+    EXPECT_THAT(texts, HasSubstr("is older than the collision"));
+    EXPECT_EQ(told.back(), "info stopped");
+}
+
+TEST_F(Watching, AnEditWhileAPartIsMeasuredRefusesItAndHoldsForTheNext) {
+    cell->on_trigger = [&](const std::string&) {
+        cell->on_trigger = nullptr;
+        edit_file(folder / "cell.seam", [](Project& p) { p.regions[0].limits.translation_mm -= 0.5; });
+    };
+    for (const char* id : {"CAR-1", "CAR-2"}) part(id);
+    options.parts = 2;
+    const double limit_mm = cell->project.regions[0].limits.translation_mm;
+    auto counts = watch(*station, options);
+    ASSERT_TRUE(counts) << counts.error().sentence();
+    EXPECT_THAT(cell->verdicts, ElementsAre(PartVerdict::refused, PartVerdict::corrected)) << texts;
+    EXPECT_THAT(texts, HasSubstr("was changed meanwhile by another program: measure again"));
+    EXPECT_EQ(station->project().regions[0].limits.translation_mm, limit_mm - 0.5);
+}
+
+// Devices that are others by then are connected anew.
+TEST_F(Watching, EditedSettingsOfADeviceDisconnect) {
+    edit_file(folder / "cell.seam", [](Project& p) { p.robots[0].settings["port"] = 7777; });
+    const auto edits = station->follow_file();
+    ASSERT_TRUE(edits) << edits.error().sentence();
+    EXPECT_EQ(edits->size(), 1u);
+    EXPECT_FALSE(station->connected());
+    EXPECT_EQ(station->project().robots[0].settings["port"], 7777);
+    EXPECT_TRUE(station->follow_file()->empty());
 }
 
 TEST_F(Watching, RobotWithoutStartSignalIsRefused) {

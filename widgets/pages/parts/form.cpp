@@ -3,8 +3,10 @@
 #include <QFile>
 #include <QHeaderView>
 #include <QPainter>
+#include <QStyledItemDelegate>
 #include <QSvgRenderer>
 #include <QTimer>
+#include <algorithm>
 #include <cmath>
 
 #include "core/geometry/notation.h"
@@ -141,6 +143,27 @@ QTableWidget* make_table(const QString& name, const QStringList& header, const Q
                      qOverload<>(&QTimer::start));
     table->horizontalHeader()->setHighlightSections(false);
     return table;
+}
+
+void elide_first_column(QTableWidget& table, int most_px) {
+    class Elided : public QStyledItemDelegate {
+      public:
+        Elided(QObject* parent, int most) : QStyledItemDelegate(parent), most_px_(most) {}
+        QSize sizeHint(const QStyleOptionViewItem& option, const QModelIndex& index) const override {
+            const QSize whole = QStyledItemDelegate::sizeHint(option, index);
+            return {std::min(whole.width(), most_px_), whole.height()};
+        }
+
+      protected:
+        void initStyleOption(QStyleOptionViewItem* option, const QModelIndex& index) const override {
+            QStyledItemDelegate::initStyleOption(option, index);
+            option->features &= ~QStyleOptionViewItem::WrapText;
+        }
+
+      private:
+        int most_px_;
+    };
+    table.setItemDelegateForColumn(0, new Elided(&table, most_px));
 }
 
 void set_rows(QTableWidget& table, const QVector<QStringList>& rows) {

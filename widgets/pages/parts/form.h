@@ -36,6 +36,8 @@ void add_field(QVBoxLayout& layout, const QString& label, QWidget* field, const 
 // Read only, one row selected at a time, first column left and the others right aligned;
 // the last one wraps.
 QTableWidget* make_table(const QString& name, const QStringList& header, const QString& tip);
+// What is longer is cut with dots; its tip has all of it.
+void elide_first_column(QTableWidget& table, int most_px);
 void set_rows(QTableWidget& table, const QVector<QStringList>& rows);
 
 // "12.34", with as many decimals as given; "-" for what is no number.

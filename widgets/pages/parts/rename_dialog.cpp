@@ -3,7 +3,9 @@
 #include <QCoreApplication>
 #include <QDialog>
 #include <QLineEdit>
+#include <QRegularExpression>
 #include <QVBoxLayout>
+#include <algorithm>
 
 #include "widgets/pages/parts/form.h"
 #include "widgets/shown_text.h"
@@ -14,6 +16,18 @@ namespace {
 struct RenameDialog {
     Q_DECLARE_TR_FUNCTIONS(RenameDialog)
 };
+
+// A name without blanks does not wrap.
+void show_whole(QDialog& dialog, const QLabel& sentence) {
+    int word_px = 0;
+    for (const QString& word : sentence.text().split(QRegularExpression("\\s")))
+        word_px = std::max(word_px, sentence.fontMetrics().horizontalAdvance(word));
+    const QMargins edges = dialog.layout()->contentsMargins();
+    dialog.layout()->activate();
+    const int width = std::max(dialog.width(), word_px + edges.left() + edges.right() + 4);
+    dialog.resize(width, std::max(dialog.layout()->totalHeightForWidth(width),
+                                  dialog.layout()->totalSizeHint().height()));
+}
 
 }  // namespace
 
@@ -39,6 +53,7 @@ void ask_name(QWidget* parent, const QString& title, const std::string& name,
                                if (taken) return dialog->accept();
                                set_verdict(*refused, shown_error(taken.error()), Tone::alarm);
                                refused->show();
+                               show_whole(*dialog, *refused);
                                line->setFocus();
                            });
     ok->setDefault(true);

@@ -2,6 +2,7 @@
 
 #include <QTimer>
 
+#include "widgets/into_view.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
 
@@ -36,6 +37,13 @@ QVBoxLayout& StepPage::make_head() {
     box->addWidget(title_);
     box->addWidget(state_);
     return *box;
+}
+
+void StepPage::point_out() {
+    QWidget* control = due();
+    if (!control || !control->isVisible()) control = state_;
+    bring_into_view(control);
+    control->setFocus(Qt::TabFocusReason);
 }
 
 void StepPage::showEvent(QShowEvent* event) {

@@ -20,6 +20,8 @@ class StepPage : public QWidget {
     Step step() const { return step_; }
     // What stays above the page while it scrolls; nullptr: nothing.
     QWidget* head() const { return head_; }
+    // Brings the control into view that the step's open item is done with, and gives it the focus.
+    virtual void point_out();
 
   signals:
     void step_wanted(seamwright::Step step);
@@ -29,6 +31,8 @@ class StepPage : public QWidget {
     // Fills the page from the desk. Called when shown and whenever the desk or the selection changed.
     virtual void refresh() = 0;
     virtual void entered() {}
+    // The control that the step's open item is done with; nullptr: none alone.
+    virtual QWidget* due() { return nullptr; }
     void showEvent(QShowEvent* event) override;
     QVBoxLayout& box() { return *box_; }
     // Makes the head, with title and state in it; for what a page adds there.

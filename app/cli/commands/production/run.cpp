@@ -64,6 +64,7 @@ struct HappeningJson {
     json operator()(const watched::Back&) const { return json::object(); }
     json operator()(const watched::RobotNotice&) const { return json::object(); }
     json operator()(const watched::LineNotice&) const { return json::object(); }
+    json operator()(const watched::ProjectNotice&) const { return json::object(); }
     json operator()(const watched::Stopped&) const { return json::object(); }
     json operator()(const watched::Lost& lost) const { return {{"device", lost.device}}; }
     json operator()(const watched::Start& start) const {

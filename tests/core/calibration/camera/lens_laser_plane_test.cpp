@@ -99,6 +99,49 @@ TEST(Lens, NoiseIsNotTakenForADistortion) {
     }
 }
 
+// Stripes in a smoothed image: each point errs like its neighbours. White noise is not taken for that.
+TEST(Lens, NeighboursThatErrAlikeAreInTheSigmas) {
+    CameraModel lens;
+    lens.fx = lens.fy = 820, lens.cx = 640, lens.cy = 512, lens.k1 = -0.15, lens.k2 = 0.03;
+    for (const int alike : {1, 3, 5, 9}) {
+        double nees = 0;
+        constexpr unsigned kSeeds = 40;
+        for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+            plain::Dice dice(seed);
+            LensData d{1280, 1024, {}};
+            for (int i = 0; i < 14; ++i) {
+                std::vector<double> white;
+                for (int k = 0; k < 200; ++k) white.push_back(dice.n() / std::sqrt(alike));
+                auto& line = d.lines.emplace_back();
+                const double tilt = dice.u(-0.05, 0.05);
+                for (int k = 0; k < 80; ++k) {
+                    double off = 0;
+                    for (int j = 0; j < alike; ++j) off += 0.15 * white[static_cast<std::size_t>(k + j)];
+                    const double along = (k - 40) * (i < 7 ? 16.5 : 13.0),
+                                 across = (i % 7 - 3) * (i < 7 ? 150 : 190);
+                    const Eigen::Vector3d at = i < 7 ? Eigen::Vector3d(along, across + tilt * along, 820)
+                                                     : Eigen::Vector3d(across + tilt * along, along, 820);
+                    Eigen::Vector2d q = lens.project(at);
+                    (i < 7 ? q.y() : q.x()) += off;
+                    if (q.x() > 0 && q.y() > 0 && q.x() < 1279 && q.y() < 1023) line.push_back(q);
+                }
+            }
+            const auto r = calibrate_lens(d, {});
+            ASSERT_TRUE(r) << r.error().sentence();
+            ASSERT_EQ(r->report.covariance.rows(), 4) << alike << " " << seed << r->report.judgement.reason;
+            EXPECT_TRUE(serves(r->report.judgement.verdict)) << alike << " " << r->report.judgement.reason;
+            // The model is scaled by half the diagonal there.
+            const double half = 0.5 * std::hypot(1280, 1024), times = half / 820;
+            const Eigen::Vector4d e(r->lens.cx - 640, r->lens.cy - 512, r->lens.k1 + 0.15 * times * times,
+                                    r->lens.k2 - 0.03 * std::pow(times, 4));
+            nees += e.dot(r->report.covariance.inverse() * e) / 4 / kSeeds;
+        }
+        std::printf("%d alike: NEES %.2f\n", alike, nees);
+        EXPECT_LT(nees, 2) << alike;
+        EXPECT_GT(nees, 0.4) << alike;
+    }
+}
+
 // A reflection of a stretch of the stripe: beside it, tilted, and by a tracker taken for it.
 void reflect(std::vector<Eigen::Vector2d>& line, std::size_t from, std::size_t to, double shift_px,
              double tilt) {
@@ -364,6 +407,45 @@ TEST(LaserPlane, AForgottenDistortionIsNamed) {
     EXPECT_GT(named, kSeeds / 2);
     EXPECT_LE(good, kSeeds / 10);
     EXPECT_LE(false_sigma, kSeeds / 10);
+}
+
+// The pairs fix the pose; what is wrong is the camera or the stage's scale, and that is said.
+TEST(LaserPlane, AWrongCameraOrScaleIsNoOpenPose) {
+    int named = 0;
+    for (unsigned seed = 1; seed <= 20; ++seed)
+        for (const bool stage : {true, false}) {
+            PlainPairs p = plain_pairs(seed, 25, 0.1, 0, -0.1);
+            CameraModel camera = p.camera();
+            if (stage)
+                for (auto& pair : p.pairs) pair.laser_mm.y() *= 1.02;
+            else
+                camera.cx += 3, camera.cy -= 3, camera.k1 += 0.003;
+            const auto r = calibrate_laser_plane(camera, p.pairs, {});
+            ASSERT_TRUE(r) << r.error().sentence();
+            EXPECT_NE(r->report.judgement.verdict, Verdict::undetermined)
+                << seed << stage << r->report.judgement.reason;
+            if (r->report.judgement.reason.english().find("form of a lens") == std::string::npos) continue;
+            ++named;
+            EXPECT_THAT(r->report.judgement.cure.english(), HasSubstr("of one scale"));
+        }
+    EXPECT_GT(named, 5);
+}
+
+TEST(LaserPlane, ACameraWithoutDistortionIsSeldomDoubted) {
+    int doubted = 0;
+    for (unsigned seed = 1; seed <= 200; ++seed) {
+        PlainPairs p = plain_pairs(seed, 25, 0, 0, 0);
+        plain::Dice dice(1000 + seed);
+        p.lens.k1 = p.lens.k2 = p.lens.p1 = p.lens.p2 = 0;
+        for (auto& pair : p.pairs)
+            pair.pixel =
+                p.lens.see(p.camera_from_laser * plain::Vec3(pair.laser_mm.x(), 0, pair.laser_mm.y())) +
+                0.1 * Eigen::Vector2d(dice.n(), dice.n());
+        const auto r = calibrate_laser_plane(p.camera(), p.pairs, {});
+        ASSERT_TRUE(r) << r.error().sentence();
+        doubted += r->report.judgement.verdict != Verdict::good;
+    }
+    EXPECT_LE(doubted, 4);
 }
 
 TEST(LaserPlane, PixelsWrittenRowFirstAreNamed) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "tests/core/calibration/camera/camera_scene.h"
 #include "tests/core/calibration/independent/plain_world.h"
 
@@ -336,6 +338,62 @@ TEST(LookupTableCalibration, AColumnThatStoodElsewhereIsNamed) {
     }
     EXPECT_GT(asked, 40);
     EXPECT_GT(named, 0.9 * asked) << asked;  // a rim of few pairs may say nothing
+}
+
+// A stage that errs at each x and each z, for all positions there alike, moves the map by that: the sigmas hold it. Where it
+// does not, they are no wider for having been asked.
+TEST(LookupTableCalibration, AStageThatErrsByItsRowsIsInTheSigmas) {
+    double honest_mm = 0;
+    for (const double stage_mm : {0.0, 0.05, 0.2}) {
+        int asked = 0, inside = 0;
+        double stated = 0;
+        for (unsigned seed = 1; seed <= 60; ++seed) {
+            plain::Dice dice(seed);
+            const plain::Lens lens = plain::any_lens(dice);
+            const plain::Motion light = any_light(dice);
+            const auto see = [&](const Eigen::Vector2d& xz) {
+                return lens.see(light * plain::Vec3(xz.x(), 0, xz.y()));
+            };
+            auto pairs = staged(see, 7, 7, 0.1, seed);
+            if (pairs.size() < 40) continue;
+            std::map<double, double> x, z;
+            for (auto& p : pairs) {
+                const Eigen::Vector2d at = p.laser_mm;
+                p.laser_mm.x() += x.try_emplace(at.x(), stage_mm * dice.n()).first->second;
+                p.laser_mm.y() += z.try_emplace(at.y(), stage_mm * dice.n()).first->second;
+            }
+            const auto r = calibrate_lookup_table(1280, 960, pairs, {});
+            ASSERT_TRUE(r) << r.error().sentence();
+            if (r->report.covariance.size() == 0) continue;
+            const auto& parameters = r->report.parameters;
+            for (std::size_t i = 0; i + 1 < parameters.size(); i += 2) {
+                double u = 0, v = 0;
+                ASSERT_EQ(std::sscanf(parameters[i].name.c_str(), "x(%lf,%lf)", &u, &v), 2);
+                const Eigen::Vector2d found(parameters[i].value, parameters[i + 1].value);
+                Eigen::Vector2d truth = found;
+                for (int k = 0; k < 20; ++k) {
+                    Eigen::Matrix2d j;
+                    for (Eigen::Index c = 0; c < 2; ++c)
+                        j.col(c) = (see(truth + 1e-3 * Eigen::Vector2d::Unit(c)) -
+                                    see(truth - 1e-3 * Eigen::Vector2d::Unit(c))) /
+                                   2e-3;
+                    truth -= j.inverse() * (see(truth) - Eigen::Vector2d(u, v));
+                }
+                const auto k = static_cast<Eigen::Index>(i);
+                const Eigen::Matrix2d c = r->report.covariance.block<2, 2>(k, k);
+                inside += (found - truth).dot(c.inverse() * (found - truth)) < 5.991;
+                stated += c.trace();
+                ++asked;
+            }
+        }
+        ASSERT_GT(asked, 100);
+        const double share = static_cast<double>(inside) / asked;
+        stated = std::sqrt(stated / asked);
+        std::printf("stage %.2f mm: %.3f of %d inside, stated %.4f mm\n", stage_mm, share, asked, stated);
+        EXPECT_GT(share, 0.85) << stage_mm;
+        if (stage_mm == 0) honest_mm = stated;
+        EXPECT_LT(stated, 4 * std::hypot(honest_mm, stage_mm)) << stage_mm;
+    }
 }
 
 // Lenses of any kind, a step in the light, noise of the stage: none is taken for a column.

@@ -340,7 +340,8 @@ bool SmoothMap::fit(const Samples& s, int least_degree, int most_degree, const S
         degrees_.push_back({degree, r, {}, {}, {}, {}});
         for (std::size_t axis = 0; axis < 2 && by_rows_[axis].cols() > 0; ++axis) {
             degrees_.back().flat_rows[axis] = q.transpose() * by_rows_[axis];
-            degrees_.back().bent_rows[axis] = modes.modes.transpose() * by_rows_[axis];
+            if (columns.size() > 0)
+                degrees_.back().bent_rows[axis] = modes.modes.transpose() * by_rows_[axis];
         }
         if (columns.size() > 0) {
             degrees_.back().cross = modes.mixed * modes.vectors;

@@ -273,8 +273,8 @@ CalibrationMethod nozzle_method() {
     m.id = "nozzle";
     m.help = "Nozzle tip on the flange from touches of the sphere";
     m.usage = "touches.json --exclude T3";
-    m.layout = R"({"target":{"place_mm":[x,y,z],"radius_mm"? (absent: a sharp point),"radius_sigma_mm"?,
-     "covariance_mm2":3x3 or "sigma_mm"?},"touches":[{"id"?,"base_from_flange":POSE},..],
+    m.layout = R"({"target":{"place_mm":[x,y,z],"radius_mm"? (absent: a sharp point),
+     "radius_sigma_mm"? (absent: 0.5 % of the radius),"covariance_mm2":3x3 or "sigma_mm"?},"touches":[{"id"?,"base_from_flange":POSE},..],
    "sigma_mm"? (of a touch; absent: from the scatter),"tip_radius_mm"?,"programmed":POSE? (flange_from_tool),
    "robot":{"sigma_mm","sigma_deg"?}?}   mm, robot's base; |base_from_flange tip - place| = radius + tip_radius)";
     m.example = nozzle_example;

@@ -185,6 +185,7 @@ Expected<void> GenicamSource::wait_until_armed() {
     const auto begun = std::chrono::steady_clock::now();
     for (;;) {
         if (arv_camera_get_boolean(camera, "AcquisitionStatus", g.out()) || g) return {};
+        if (is_lost()) return tl::unexpected(gone());
         const auto waited = std::chrono::steady_clock::now() - begun;
         if (waited > (tells ? most : kStatusUnknown)) break;
         std::this_thread::sleep_for(std::chrono::milliseconds(1));

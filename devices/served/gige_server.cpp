@@ -133,11 +133,14 @@ GigeBytes GigeServer::Impl::answer(std::span<const std::byte> command, const End
         command.size() < kCommandHeader + word16(command, 4))
         return {};
     const std::uint16_t word = word16(command, 2);
+    const std::span<const std::byte> data = command.subspan(kCommandHeader, word16(command, 4));
     const bool in_control = controller && *controller == from;
     if (in_control) heard = Clock::now();
+    // Who is not in control may write one register alone: that with which it takes the control.
+    const bool takes_control =
+        !controller && word == Gvcp::write_register && data.size() == 8 && word32(data, 0) == kPrivilege;
     GigeBytes body;
-    const Gvcp::Status status =
-        execute(word, command.subspan(kCommandHeader, word16(command, 4)), in_control || !controller, body);
+    const Gvcp::Status status = execute(word, data, in_control || takes_control, body);
     if (status != Gvcp::success) body.clear();
     if (const bool taken = (reg(kPrivilege) & 3U) != 0; taken && !controller) {
         controller = from;

@@ -77,6 +77,7 @@ Expected<void> Station::Impl::measure_robot(Job& job, const std::string& robot_i
     for (auto& [id, light] : job.light) SEAM_OK(next_of(id, spots.begin()));
     SEAM_OK(robot.start_measuring(measuring_program(job.project, robot_id)));
     if (robot_id != job.options.caller) job.started_robots.push_back(robot_id);
+    if (job.options.robot_goes) job.options.robot_goes(robot_id);
     std::set<std::string> open;
     for (const Spot* spot : spots) open.insert(spot->id);
     while (!open.empty()) {

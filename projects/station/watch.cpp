@@ -65,7 +65,10 @@ constexpr std::chrono::milliseconds kLineSlice{20};
 class Watch {
   public:
     Watch(Station& station, const WatchOptions& options)
-        : station_(station), options_(options), retry_(options.retry_first) {}
+        : station_(station),
+          options_(options),
+          retry_(options.retry_first),
+          call_again_(options.call_again_first) {}
 
     Expected<WatchCounts> run() {
         while (!ended()) {
@@ -77,7 +80,10 @@ class Watch {
             }
             if (dead_ && std::chrono::steady_clock::now() >= look_again_) dead_ = dead_sensor();
             SEAM_TRY(auto start, next_start());
-            if (!start.has_value()) continue;
+            if (!start.has_value()) {
+                let_call_again();
+                continue;
+            }
             if (const auto part = named(*start)) SEAM_OK(measure(*part));
         }
         state_ = WatchState::stopped;
@@ -204,6 +210,7 @@ class Watch {
             if (start) {
                 ready();
                 caller_ = setup.id;
+                if (stranded_ && stranded_->first == caller_) stranded_.reset();
                 newest(*robot, setup.id, *start);
                 if (expired(*robot, setup.id, *start)) return std::nullopt;
                 return std::optional(*start);
@@ -279,6 +286,13 @@ class Watch {
             tell(WatchLevel::warning, watched::RobotNotice{}, Text("robot {}: {}", id, told.error().text()));
     }
 
+    void let_call_again() {
+        if (!stranded_ || dead_ || std::chrono::steady_clock::now() < stranded_->second) return;
+        const std::string id = std::exchange(stranded_, std::nullopt)->first;
+        if (RobotLink* robot = station_.robot(id))
+            refuse(*robot, id, "the measuring failed before the robot moved; call again");
+    }
+
     static Text too_old(const StartSignal& start, std::chrono::nanoseconds age) {
         return Text("part {}: the call may be {:.0f} s old, another part may stand there; call again",
                     name(start), std::chrono::duration<double>(age).count());
@@ -338,6 +352,8 @@ class Watch {
         // The link is here to stay: held until the application has begun, or will not any more.
         run.hold = kHoldForEver;
         run.part_over = [&] { return part_called(); };
+        bool went = false;
+        run.robot_goes = [&](const std::string& id) { went = went || id == caller_; };
         run.progress = [&](const RunProgress& p) {
             alive();
             tell(WatchLevel::info, watched::SpotDone{p.done, p.total}, p.text);
@@ -366,7 +382,18 @@ class Watch {
                                                                    : WatchLevel::warning,
              watched::RunDone{done, took.count(), drift}, std::move(said));
         if (dead_ && !was_dead) tell_lost(dead_->first, dead_->second);
+        strand(status == RunStatus::device && !went);
         return forget_old_runs();
+    }
+
+    void strand(bool stands) {
+        if (!stands) {
+            call_again_ = options_.call_again_first;
+            stranded_.reset();
+        } else if (!caller_.empty()) {
+            stranded_.emplace(caller_, std::chrono::steady_clock::now() + call_again_);
+            call_again_ = std::min(2 * call_again_, options_.call_again_longest);
+        }
     }
 
     // Whether the line calls for the next part while the last one is still to be taken; kept for the next
@@ -415,6 +442,9 @@ class Watch {
     bool away_ = false;                           // the station or a robot, and that was told
     std::optional<std::pair<Text, Error>> dead_;  // a sensor, since a run that it ended; told
     std::chrono::steady_clock::time_point look_again_{};
+    // Which robot waits in front of a part that failed before it went, and when it may be refused.
+    std::optional<std::pair<std::string, std::chrono::steady_clock::time_point>> stranded_;
+    std::chrono::milliseconds call_again_;
 };
 
 }  // namespace

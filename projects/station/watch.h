@@ -113,6 +113,9 @@ struct WatchOptions {
     // stand there by now. Of several that wait the newest alone counts.
     std::chrono::milliseconds start_expiry{10000};
     std::chrono::milliseconds retry_first{100}, retry_longest{500};  // doubles between attempts
+    // A robot whose part failed before its program went waits there for good. When all sensors answer and so long after
+    // the failure (doubling from part to part) it is refused, upon which it calls once more.
+    std::chrono::milliseconds call_again_first{1000}, call_again_longest{60'000};
     std::stop_token
         cancel;  // heard within kCancelSlice; a part in the middle ends as cancelled, the robot is told
     std::function<void(const WatchEvent&)> tell;  // on the watching thread

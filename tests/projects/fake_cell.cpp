@@ -151,6 +151,7 @@ Expected<StartSignal> FakeRobot::wait_start(std::chrono::milliseconds timeout) {
 
 Expected<void> FakeRobot::confirm(PartVerdict verdict, const std::string&) {
     cell_.verdicts.push_back(verdict);
+    if (verdict == PartVerdict::refused && cell_.on_refused) cell_.on_refused();
     const bool deaf = cell_.deaf_to == verdict;
     if ((!deaf || cell_.deaf_but_obeys) && cell_.permission != Permission::taken) {
         cell_.permission = verdict == PartVerdict::corrected ? Permission::given : Permission::none;

@@ -55,6 +55,7 @@ struct FakeCell {
     std::function<void()> on_permission;       // before each look
     std::deque<Expected<StartSignal>> starts;  // what wait_start() answers in turn; then silence
     std::function<void(const std::string& spot)> on_trigger;
+    std::function<void()> on_refused;
 
     Profile cut(const Spot& spot);
 };

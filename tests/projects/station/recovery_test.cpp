@@ -98,6 +98,27 @@ class Recovery : public testing::TestWithParam<std::string> {
     std::jthread watching;
 };
 
+// Called for while the camera is unplugged: the part fails, and a robot program that calls by itself (this ABB one) stands in
+// front of it. No hand on the controller is needed when the camera is back: such a program calls again by itself.
+TEST_P(Recovery, APartCalledForWhileTheCameraWasOffHoldsNobodyUpWhenItIsBack) {
+    served->sensor.reset();
+    {
+        std::unique_lock lock(mutex);
+        const int before = runs;
+        served->controller().press_start(PartId("CAR-7"));
+        ASSERT_TRUE(told.wait_for(lock, 60s, [&] { return runs > before; })) << log;
+        ASSERT_FALSE(last_ok) << log;
+    }
+    std::this_thread::sleep_for(2s);
+    camera_away(0ms);
+    EXPECT_LT(next_part(), kBoundS) << log;
+    const auto stored = served->station->file().runs();
+    ASSERT_TRUE(stored);
+    const auto measured_as_7 = std::count_if(stored->begin(), stored->end(),
+                                             [](const RunSummary& r) { return r.part_id == "CAR-7"; });
+    EXPECT_EQ(measured_as_7, GetParam() == "abb-rapid" ? 2 : 1) << log;
+}
+
 TEST_P(Recovery, TheNextPartIsGoodSoonAfterEveryOutage) {
     const std::vector<std::pair<const char*, std::function<void()>>> outages = {
         {"closed for 0.3 s", [&] { faulty(ControllerFault::disconnect, 300ms); }},

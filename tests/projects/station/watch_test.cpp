@@ -192,6 +192,42 @@ TEST_F(Watching, IsNotReadyWhileASensorIsDead) {
     EXPECT_THAT(texts, HasSubstr("sensor A is lost: sensor A: the connection was closed by the other side"));
 }
 
+// The robot waits in front of a part that failed before its program went: refused once all answer, it calls again.
+TEST_F(Watching, ARobotThatWasLeftInFrontOfAFailedPartIsLetCallAgain) {
+    cell->dead_sensor = true;
+    options.call_again_first = std::chrono::milliseconds(50);
+    int done = 0;
+    options.tell = [&](const WatchEvent& e) {
+        if (!std::holds_alternative<watched::RunDone>(e.happening)) return;
+        if (++done == 2) cell->dead_sensor = false;
+    };
+    cell->on_refused = [&] { part("CAR-1"); };  // as the robot programs do
+    part("CAR-1");
+    part("CAR-1");
+    options.parts = 3;
+    const auto counts = watch(*station, options);
+    ASSERT_TRUE(counts);
+    EXPECT_EQ(counts->failed, 2);
+    EXPECT_EQ(counts->corrected, 1);
+    EXPECT_THAT(cell->verdicts, ElementsAre(PartVerdict::failed, PartVerdict::failed, PartVerdict::refused,
+                                            PartVerdict::corrected));
+}
+
+// What was measured in part has brought its robot to the end of its program: nothing is said to it a second time.
+TEST_F(Watching, ARobotThatWentIsNotAskedToCallAgain) {
+    cell->silent_sensor_at = "S3";
+    options.call_again_first = std::chrono::milliseconds(1);
+    part("CAR-1");
+    std::stop_source stop;
+    options.cancel = stop.get_token();
+    int waits = 0;
+    options.alive = [&] {
+        if (!cell->verdicts.empty() && ++waits == 20) stop.request_stop();
+    };
+    ASSERT_TRUE(watch(*station, options));
+    EXPECT_THAT(cell->verdicts, ElementsAre(PartVerdict::failed));
+}
+
 TEST_F(Watching, ARobotThatGoesWhileASensorIsDeadIsToldTooAndAllAreBackAtOnce) {
     cell->dead_sensor = true;
     part("CAR-1");

@@ -48,9 +48,10 @@ struct RunOptions {
     // Heard within kCancelSlice until the first frame is written, and again while an application is waited
     // for.
     std::stop_token cancel;
-    std::chrono::milliseconds hold = kHold;            // see HoldOptions
-    std::function<bool()> part_over = {};              // see HoldOptions
-    std::function<void(const std::string& robot_id)> robot_goes = {};  // its program took the start of measuring
+    std::chrono::milliseconds hold = kHold;  // see HoldOptions
+    std::function<bool()> part_over = {};    // see HoldOptions
+    std::function<void(const std::string& robot_id)> robot_goes =
+        {};                                            // its program took the start of measuring
     std::function<void(const RunProgress&)> progress;  // called on the running thread
     // A person's word before a push run writes: called on the running thread when every region has passed the
     // gate, with the judged run, which is in the file already, and in each RegionRecord::push.before the

@@ -13,6 +13,10 @@
 // are alike (contour_noise.h). On a short arc the centre is hardly determined along the arc's bisector (with a free radius
 // the variance grows with the inverse fourth power of the arc): below minimum_arc_deg, or when the centre's sigma exceeds a
 // tenth of the radius, the answer is ill_conditioned.
+//
+// A large circle may lie within the noise of a small rim and of what runs into it, with more points than the rim has. So every
+// piece that a circle of less than half the radius (another shape, no mere error of form) fits much better than the answer,
+// though the answer takes most of it for its own rim, is a rival: ambiguous.
 
 #include <fmt/format.h>
 
@@ -43,6 +47,12 @@ constexpr double kCircleRowEnd = 0.06;    // of a row, that it loses where the c
 constexpr double kCircleStep = 0.3;       // of the radius, at most
 constexpr double kCircleSettled = 1e-9;   // of 1 mm and the radius
 constexpr double kCircleUncertain = 0.1;  // of the radius: the centre's sigma from which the arc is too short
+// A rival's radius in that of the answer, its points in the answer's and how many of them the answer has.
+constexpr double kRivalRadius = 0.5, kRivalShare = 0.08, kRivalOwned = 0.7;
+// The answer's chi-squared on the rival's points less the rival's, and of the latter. A best of some hundred places and three
+// unknowns reaches 20 by chance.
+constexpr double kRivalGain = 30, kRivalGainShare = 0.5;
+constexpr double kRivalMisfit = 1.15;  // rms over the noise, below which the answer explains its points
 
 std::vector<ParameterInfo> circle_parameters() {
     return with_window({
@@ -76,7 +86,7 @@ class CircleFinder final : public FeatureFinder {
         const ProfileNoise noise = points_.noise();
         Circle circle = begun;
         const Feature alone = refine(feature, circle, noise);
-        return with_straights(alone, begun, circle, noise);
+        return without_rival(with_straights(alone, begun, circle, noise), noise);
     }
 
   private:
@@ -139,7 +149,13 @@ class CircleFinder final : public FeatureFinder {
         return best;
     }
 
+    struct Piece {
+        Circle circle;
+        int from = 0, to = 0, count = 0;
+    };
+
     bool start(Circle& best, double& best_arc) const {
+        pieces_.clear();
         const int n = static_cast<int>(points_.x.size());
         const double noise = contour_noise_mm(points_.x, points_.z, scratch_);
         const double tolerance = std::max(3 * noise, kCircleLeastTolerance_mm);
@@ -147,9 +163,11 @@ class CircleFinder final : public FeatureFinder {
         Circle any;
         const auto try_circle = [&](const Circle& c) {
             double arc = 0;
-            const int count = longest_run(c, tolerance, arc);
+            int from = 0, to = 0;
+            const int count = longest_run(c, tolerance, arc, &from, &to);
             if (count < kFewestOnArc) return;
             if (arc >= minimum_arc_) {
+                pieces_.push_back({c, from, to, count});
                 if (count > best_count) {
                     best_count = count;
                     best = c;
@@ -289,6 +307,7 @@ class CircleFinder final : public FeatureFinder {
 
     Feature judged(Feature feature, const Circle& circle, double arc,
                    const Eigen::Matrix2d& covariance) const {
+        answer_ = circle;
         feature.point_mm = circle.centre;
         if (known_ <= 0 && (circle.radius < smallest_ || circle.radius > largest_)) {
             feature.status = FeatureStatus::not_found;
@@ -339,10 +358,53 @@ class CircleFinder final : public FeatureFinder {
         return judged(feature, fitted.circle, fitted.arc, fitted.within);
     }
 
+    // An ok answer that misses its points by more than their noise, and has a rival, is ambiguous.
+    Feature without_rival(Feature feature, const ProfileNoise& noise) const {
+        if (feature.status != FeatureStatus::ok || known_ > 0) return feature;
+        const Circle& circle = answer_;
+        const double sigma = std::max({noise.point_mm, noise.alone_mm, kCircleLeastGate_mm});
+        if (feature.rms_mm < kRivalMisfit * sigma) return feature;
+        const double least = kRivalGain * sigma * sigma * std::max(1.0, noise.apart());
+        const double gate = kCircleGate * feature.rms_mm;
+        const Piece* worst = nullptr;
+        double most = 0;
+        for (const Piece& piece : pieces_) {
+            if (piece.circle.radius > kRivalRadius * circle.radius || piece.count < 2 * kFewestOnArc ||
+                piece.count < kRivalShare * feature.points_used)
+                continue;
+            int owned = 0;
+            double of_answer = 0, of_piece = 0;
+            for (int i = piece.from; i <= piece.to; ++i) {
+                const double d = circle.distance(points_.x[i], points_.z[i]);
+                if (std::abs(d) > gate) continue;
+                ++owned;
+                of_answer += d * d;
+                of_piece += std::pow(piece.circle.distance(points_.x[i], points_.z[i]), 2);
+            }
+            const double gain = of_answer - of_piece;
+            if (owned < kRivalOwned * piece.count || gain < least || gain < kRivalGainShare * of_answer ||
+                gain < most)
+                continue;
+            most = gain;
+            worst = &piece;
+        }
+        if (!worst) return feature;
+        feature.status = FeatureStatus::ambiguous;
+        feature.message = Text(
+            "a circle of {:.3g} mm fits the most points, one of {:.3g} mm fits a part of them much better: "
+            "limit the "
+            "radius",
+            circle.radius, worst->circle.radius);
+        feature.rivals_mm = {circle.centre, worst->circle.centre};
+        return feature;
+    }
+
     FeatureWindow window_;
     double known_, smallest_, largest_, minimum_arc_;
     mutable FeaturePoints points_;
     mutable ArcFit arc_;
+    mutable Circle answer_;              // that judged() has seen last
+    mutable std::vector<Piece> pieces_;  // that start() found round
     mutable std::vector<double> scratch_;
     mutable std::vector<std::array<int, 3>> rows_;  // first, last, count
     mutable std::vector<std::uint8_t> keep_;

@@ -74,6 +74,56 @@ TEST_P(Rim, BesideHardlyAnyStraight) {
     count.expect(0.95, 0.93);
 }
 
+// Sides that are bent themselves. A circle of 16 mm lies within three noises of such a rim of 2 mm and of its sides, with more
+// points than the rim: refused, or right, never far off.
+TEST(RimBetweenBentSides, IsNeverTakenForALargeCircleOfRimAndSides) {
+    Dice dice(45);
+    for (const auto& [radius, sweep] : {std::pair(2., 60.), {5., 45.}, {5., 60.}}) {
+        int found = 0, far = 0;
+        for (int i = 0; i < 150; ++i) {
+            Scene s = scene_of({radius, .06, 1600}, Grid::exact, "circle");
+            s.sensor.points = 800;
+            const auto side = [&] { return (dice.chance(0.5) ? 1 : -1) * dice.uniform(200, 1000); };
+            const double left = side(), right = side(), degrees = 12 * 180 / M_PI;
+            Sheet sheet{{-12, 0}};
+            roll(sheet, sweep / 2 + degrees / left, -degrees / left, std::abs(left));
+            s.truth = sheet.back() + turned({0, -radius}, rad(sweep / 2));
+            roll(sheet, sweep / 2, -sweep, radius);
+            roll(sheet, -sweep / 2, -degrees / right, std::abs(right));
+            s.sheets = {sheet};
+            s.turn(dice.uniform(-15, 15), {dice.uniform(-3, 3) - s.truth.x(), 0});
+            const Profile p = s.profile(dice);
+            const Feature f = make_feature_finder(s.recipe).value()->find(p);
+            if (f.status != FeatureStatus::ok) continue;
+            ++found;
+            far += (f.point_mm - s.truth).norm() > radius;
+        }
+        EXPECT_EQ(far, 0) << "of " << found << " rims of " << radius << " mm over " << sweep << " degrees";
+        EXPECT_GE(found, 45) << radius << " mm";
+    }
+}
+
+// An error of form far above a good sensor's noise is no other circle.
+TEST(RimWithAnErrorOfForm, IsNoRivalOfItself) {
+    Dice dice(46);
+    int found = 0;
+    for (int i = 0; i < 100; ++i) {
+        Scene s = scene_of({8, .003, 1280}, Grid::exact, "circle");
+        const double lobes = dice.uniform(2, 5), phase = dice.uniform(0, 6);
+        Sheet sheet;
+        for (double deg = 150; deg >= 30; deg -= 1)
+            sheet.push_back(turned({8 + 0.02 * std::cos(lobes * rad(deg) + phase), 0}, rad(deg)));
+        sheet.insert(sheet.begin(), sheet.front() + turned({-kFar, 0}, rad(60)));
+        sheet.push_back(sheet.back() + turned({kFar, 0}, rad(-60)));
+        s.sheets = {sheet};
+        s.turn(dice.uniform(-4, 4), {dice.uniform(-2, 2), dice.uniform(-2, 2)});
+        const Feature f = make_feature_finder(s.recipe).value()->find(s.profile(dice));
+        EXPECT_NE(f.status, FeatureStatus::ambiguous) << f.message;
+        found += f.status == FeatureStatus::ok && (f.point_mm - s.truth).norm() < 0.5;
+    }
+    EXPECT_GE(found, 95);
+}
+
 INSTANTIATE_TEST_SUITE_P(Rims, Rim, testing::Values(Grid::raw, Grid::exact));
 
 }  // namespace

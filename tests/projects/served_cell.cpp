@@ -81,8 +81,13 @@ Expected<ServedCell> serve_cell(const ServedCellOptions& options, const std::fil
     p = station.project();
     p.calibrations[0].sensor_identity = p.sensors[0].identity;
     p.calibrations[0].robot_identity = p.robots[0].identity;
+    // A machine under load may hold an event up for so long that the driver refuses it: half a reference is none.
     auto taught = station.run({});
+    for (int again = 0; again < 3 && taught && taught->status == RunStatus::device; ++again)
+        taught = station.run({});
     if (!taught) return tl::unexpected(taught.error());
+    if (taught->status == RunStatus::device)
+        return device_error(Text("the reference was not measured: {}", taught->message), "served cell");
     for (std::size_t i = 0; i < p.spots.size(); ++i) {
         const SpotMeasurement& m = taught->spots[i];
         if (m.status == SpotStatus::measured) p.spots[i].reference_mm = m.measured_mm;

@@ -7,7 +7,9 @@
 // ambiguous unless `which` tells them apart; a bend of less than a third of the sharpest turn is no rival.
 // Where no bend shows, the split is the place that divides the points into two straight pieces with the
 // smallest sum of squared distances (total least squares by running sums). Then both lines are fitted
-// robustly without the zone `blend_mm` around their intersection.
+// robustly without the zone `blend_mm` around their intersection. Where it is not given it grows until the points next to
+// it do not leave the lines together any more: the sum of the first k distances of both sides, for every k, against its
+// noise. Where a third of a side would have to go, the side is bent itself and nothing is left out.
 //
 // Covariance: each line fixes the point across itself with the variance of the fit at that place,
 // sigma_i^2 (1 / n_i + s_i^2 / S_i); two lines with normals N = (n_1 n_2)^T give N^-1 diag(v) N^-T. As the
@@ -50,7 +52,7 @@ std::vector<ParameterInfo> corner_parameters() {
         {"side_length_mm", "mm", 0, 1e5, 0, 2,
          "Automatic split: length of each line from the corner; 0 takes all."},
         {"blend_mm", "mm", 0, 1000, 0, 2,
-         "Points nearer to the corner than this are left out: radius or burr."},
+         "Points nearer to the corner than this are left out: radius or burr; 0 finds it (automatic split)."},
         {"which",
          "",
          0,
@@ -71,6 +73,9 @@ constexpr double kCornerApart = 0.1;         // of their distance: what tells tw
 constexpr double kCornerUnknown_mm2 = 1e12;  // variance of a corner that two lines do not tell
 constexpr double kCornerEndless_mm = 1e9;
 constexpr std::size_t kCornersNamed = 4;
+// Of a blend that is not given: sums beyond so many sigma, how it grows, and the most of a side.
+constexpr double kBlendSeen = 3, kBlendGrows = 1.25, kBlendMost = 1.0 / 3;
+constexpr double kBlendStep = 2;  // points
 
 class Corner final : public FeatureFinder {
   public:
@@ -102,14 +107,14 @@ class Corner final : public FeatureFinder {
                     return points_.x[i] >= settings_.right_from && points_.x[i] <= settings_.right_to;
                 },
                 right_x_, right_z_);
-            return intersect(feature, settings_.blend > 0 ? 3 : 1, 0, 0, n);
+            return intersect(feature, settings_.blend > 0 ? 3 : 1, 0, 0, n, settings_.blend);
         }
         const auto& bends = bends_.find(points_.x, points_.z, settings_.minimum_angle, settings_.blend);
-        if (bends.empty()) return intersect(feature, 4, best_split(), 0, n);
+        if (bends.empty()) return blended(feature, best_split(), 0, n);
         const Bend* bend = choose(bends, feature);
         if (!bend) return feature;
-        return intersect(feature, 4, static_cast<std::size_t>(bend->split),
-                         static_cast<std::size_t>(bend->first), static_cast<std::size_t>(bend->last) + 1);
+        return blended(feature, static_cast<std::size_t>(bend->split), static_cast<std::size_t>(bend->first),
+                       static_cast<std::size_t>(bend->last) + 1);
     }
 
   private:
@@ -202,15 +207,59 @@ class Corner final : public FeatureFinder {
         return best;
     }
 
+    // With the zone that is given, or with the one that is found.
+    Feature blended(const Feature& begun, std::size_t split, std::size_t first, std::size_t end) const {
+        const Feature whole = intersect(begun, 4, split, first, end, settings_.blend);
+        if (settings_.blend > 0) return whole;
+        const double most = kBlendMost * std::min(left_.length_mm(), right_.length_mm());
+        const double step = kBlendStep * std::max(left_.length_mm() / std::max(1, left_.used),
+                                                  right_.length_mm() / std::max(1, right_.used));
+        Feature feature = whole;
+        for (double blend = 0; feature.status == FeatureStatus::ok && rounded(feature.point_mm);) {
+            blend = kBlendGrows * blend + step;
+            if (!(blend <= most)) return whole;
+            feature = intersect(begun, 4, split, first, end, blend);
+        }
+        return feature.status == FeatureStatus::ok ? feature : whole;
+    }
+
+    // Whether the points next to the corner leave the two lines together, to the inside or to the outside.
+    bool rounded(const Eigen::Vector2d& corner) const {
+        const double sigma = workspace_.noise.point_mm > 0 ? workspace_.noise.point_mm
+                                                           : std::min(left_.sigma_mm, right_.sigma_mm);
+        // The lines run from left to right; where they turn to the left the inside is there.
+        const double inside =
+            left_.direction.x() * right_.direction.y() > left_.direction.y() * right_.direction.x() ? 1 : -1;
+        near_.clear();
+        const auto side = [&](const std::vector<double>& x, const std::vector<double>& z,
+                              const LineFit& line) {
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                const Eigen::Vector2d p(x[i], z[i]);
+                near_.emplace_back((p - corner).norm(), inside * line.distance(p));
+            }
+        };
+        side(left_x_, left_z_, left_);
+        side(right_x_, right_z_, right_);
+        std::sort(near_.begin(), near_.end());
+        const double apart = std::max(1.0, workspace_.noise.apart());
+        double sum = 0;
+        for (std::size_t k = 0; k < near_.size() / 2; ++k) {
+            sum += near_[k].second;
+            if (std::abs(sum) > kBlendSeen * sigma * std::sqrt(static_cast<double>(k + 1) * apart))
+                return true;
+        }
+        return false;
+    }
+
     // `split` = 0: the sides are already taken. Else they are taken from the points first..end. Rounds: the
     // intersection decides which points count, and so on.
-    Feature intersect(Feature feature, int rounds, std::size_t split, std::size_t first,
-                      std::size_t end) const {
+    Feature intersect(Feature feature, int rounds, std::size_t split, std::size_t first, std::size_t end,
+                      double blend) const {
         if (split > 0) {
             take([&](std::size_t i) { return i >= first && i < split; }, left_x_, left_z_);
             take([&](std::size_t i) { return i >= split && i < end; }, right_x_, right_z_);
         }
-        LineFit a, b;
+        LineFit &a = left_, &b = right_;
         workspace_.noise = points_.noise();
         Eigen::Matrix2d normals;
         for (int round = 0; round < rounds; ++round) {
@@ -250,17 +299,17 @@ class Corner final : public FeatureFinder {
                     if (near(i) < near(nearest)) nearest = i;
                 take(
                     [&](std::size_t i) {
-                        return i >= first && i < nearest && near(i) >= settings_.blend && near(i) <= longest;
+                        return i >= first && i < nearest && near(i) >= blend && near(i) <= longest;
                     },
                     left_x_, left_z_);
                 take(
                     [&](std::size_t i) {
-                        return i > nearest && i < end && near(i) >= settings_.blend && near(i) <= longest;
+                        return i > nearest && i < end && near(i) >= blend && near(i) <= longest;
                     },
                     right_x_, right_z_);
             } else {
-                drop_near(left_x_, left_z_, p);
-                drop_near(right_x_, right_z_, p);
+                drop_near(left_x_, left_z_, p, blend);
+                drop_near(right_x_, right_z_, p, blend);
             }
         }
         const double sa = a.direction.dot(feature.point_mm - a.centre),
@@ -285,10 +334,11 @@ class Corner final : public FeatureFinder {
         return feature;
     }
 
-    void drop_near(std::vector<double>& x, std::vector<double>& z, const Eigen::Vector2d& p) const {
+    static void drop_near(std::vector<double>& x, std::vector<double>& z, const Eigen::Vector2d& p,
+                          double blend) {
         std::size_t kept = 0;
         for (std::size_t i = 0; i < x.size(); ++i)
-            if (std::hypot(x[i] - p.x(), z[i] - p.y()) >= settings_.blend) {
+            if (std::hypot(x[i] - p.x(), z[i] - p.y()) >= blend) {
                 x[kept] = x[i];
                 z[kept++] = z[i];
             }
@@ -302,6 +352,8 @@ class Corner final : public FeatureFinder {
     mutable ContourBends bends_;
     mutable std::vector<double> left_x_, left_z_, right_x_, right_z_;
     mutable std::vector<std::array<double, 5>> sums_;
+    mutable LineFit left_, right_;                         // as intersect() fitted them last
+    mutable std::vector<std::pair<double, double>> near_;  // distance from the corner, and from its line
     mutable LineWorkspace workspace_;
 };
 

@@ -124,6 +124,22 @@ TEST(RimWithAnErrorOfForm, IsNoRivalOfItself) {
     EXPECT_GE(found, 95);
 }
 
+// A corner's rounding need not be told: it is where its sides meet, with the stated sigma.
+TEST(RoundedCorner, NeedsNoBlend) {
+    for (const bool rounded : {true, false}) {
+        Coverage told, found;
+        Dice dice(47);
+        for (int i = 0; i < 200; ++i) {
+            Scene s = bend(dice, rounded);
+            Dice again = dice;
+            told.add(s, dice);
+            s.recipe.parameters.erase("blend_mm");
+            found.add(s, again);
+        }
+        found.expect(0.9 * told.found / told.all, 0.88);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Rims, Rim, testing::Values(Grid::raw, Grid::exact));
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "devices/robot_link.h"
 
 #include <array>
+#include <thread>
 
 namespace seamwright {
 namespace {
@@ -77,6 +78,20 @@ Expected<Permission> RobotLink::permission() {
 Expected<void> RobotLink::move_to(const Pose&) {
     return device_error("this robot cannot be moved from the program", {},
                         "move it by hand and read its position");
+}
+
+Expected<Pose> RobotLink::standing_at(const Pose& sent) {
+    for (bool settled = false;; settled = true) {
+        SEAM_TRY(const auto at, base_from_flange());
+        const double off_mm = distance_mm(at, sent), off_deg = deg_from_rad(angle_rad(at, sent));
+        if (off_mm <= kStandsMm && off_deg <= kStandsDeg) return at;
+        if (settled)
+            return device_error(
+                Text("the robot stands {:.2f} mm and {:.2f} deg off the pose that it was sent to", off_mm,
+                     off_deg),
+                {}, "send it there again");
+        std::this_thread::sleep_for(kSettles);
+    }
 }
 
 }  // namespace seamwright

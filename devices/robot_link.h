@@ -33,6 +33,13 @@ std::optional<RobotMode> robot_mode_from_string(std::string_view name);
 // Enough for one exposure.
 inline constexpr double kStand_s = 0.1;
 
+// A frame that the application runs a path in, and its number in the program, from 1.
+struct NumberedFrame {
+    int number = 0;
+    std::string name;
+    bool operator==(const NumberedFrame&) const = default;
+};
+
 // One linear pass over a spot: entry -> trigger -> exit, sensor's Y along the travel. Poses are
 // base_from_flange.
 struct MeasuringMove {
@@ -40,8 +47,9 @@ struct MeasuringMove {
     std::vector<Pose> via = {};  // passed in this order on the way to the entry, at travelling speed
     Pose entry = Pose::Identity(), trigger = Pose::Identity(), exit = Pose::Identity();
     double speed_mm_s = 100;
-    bool stop_at_trigger = false;  // measure standing still
-    double stand_s = kStand_s;     // how long it stands after the trigger, where it does
+    bool stop_at_trigger = false;            // measure standing still
+    double stand_s = kStand_s;               // how long it stands after the trigger, where it does
+    std::vector<NumberedFrame> frames = {};  // that it is measured for
 };
 
 // The robot fired the trigger for a spot. `base_from_flange` is what the controller reports, not necessarily
@@ -122,6 +130,11 @@ class RobotLink {
     // Teaching: goes to `base_from_flange` and stands still there. An Error unless can_move().
     virtual bool can_move() const { return false; }
     virtual Expected<void> move_to(const Pose& base_from_flange);
+    // The flange, which must be where it was sent, to kStandsMm and kStandsDeg: read once more, kSettles later, where it is
+    // not. What answers that it has moved need not stand there: a controller may have taken the end of another motion for it.
+    static constexpr double kStandsMm = 0.5, kStandsDeg = 0.1;
+    static constexpr std::chrono::milliseconds kSettles{300};
+    Expected<Pose> standing_at(const Pose& base_from_flange);
     // What the link has to tell since the last call beside its answers, a sentence each: peers that it
     // refused.
     virtual std::vector<Text> take_notices() { return {}; }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "devices/robot_words.h"
 
@@ -25,9 +27,59 @@ std::string program_signature(const std::vector<MeasuringMove>& moves) {
             for (int i = 0; i < 9; ++i)
                 add(fmt::format("{}", std::llround(pose->linear().data()[i] / 1.7e-6)));
         }
-        if (move.stand_s != kStand_s) add(fmt::format("stands {:.2f}", move.stand_s));
+        add(fmt::format("{:.4f} m/s", move.speed_mm_s / 1000));
+        if (move.stop_at_trigger) add(fmt::format("stands {:.2f}", move.stand_s));
+        for (const NumberedFrame& frame : move.frames)
+            add(fmt::format("frame {} {}", frame.number, frame.name));
     }
     return fmt::format("SW-{:016X}", hash);
+}
+
+std::vector<const ApplicationFrame*> frames_by_number(const std::vector<ApplicationFrame>& frames) {
+    std::vector<const ApplicationFrame*> by_number;
+    for (const ApplicationFrame& frame : frames) {
+        const std::size_t number =
+            frame.number > 0 ? static_cast<std::size_t>(frame.number) : by_number.size() + 1;
+        by_number.resize(std::max(number, by_number.size()));
+        by_number[number - 1] = &frame;
+    }
+    return by_number;
+}
+
+std::vector<std::string> frame_constants(const std::vector<ApplicationFrame>& frames,
+                                         const std::string& prefix, std::size_t longest,
+                                         std::string_view module) {
+    const auto letter = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+    };
+    const auto folded = [](std::string text) {
+        for (char& c : text)
+            if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+        return text;
+    };
+    std::set<std::string> taken;
+    std::string word;
+    for (const char c : module) {
+        if (letter(c)) {
+            word += c;
+        } else if (!word.empty()) {
+            taken.insert(folded(std::exchange(word, {})));
+        }
+    }
+    std::vector<std::string> names;
+    for (const ApplicationFrame& frame : frames) {
+        std::string name = prefix + frame.name;
+        std::replace_if(
+            name.begin(), name.end(), [&](char c) { return !letter(c); }, '_');
+        name.resize(std::min(name.size(), longest));
+        const std::string stem = name;
+        for (int i = 2; !taken.insert(folded(name)).second; ++i) {
+            const std::string tail = fmt::format("_{}", i);
+            name = stem.substr(0, longest - tail.size()) + tail;
+        }
+        names.push_back(name);
+    }
+    return names;
 }
 
 Expected<void> check_path_program(const PathProgramRequest& request) {

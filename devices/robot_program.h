@@ -14,6 +14,7 @@ struct ApplicationFrame {
     std::string region_id;
     std::string name;  // on the controller, as RobotLink::write_frame wants it
     Pose base_from_frame = Pose::Identity();
+    int number = 0;  // by which the program knows it, from 1; 0: the next
 };
 
 struct ProgramRequest {
@@ -48,8 +49,17 @@ Expected<void> check_path_program(const PathProgramRequest& request);
 // `text` as a comment may hold it: one line of ASCII.
 std::string program_comment(std::string text);
 
+// The frames by their numbers: the first is number 1, nullptr a number that no frame has.
+std::vector<const ApplicationFrame*> frames_by_number(const std::vector<ApplicationFrame>& frames);
+// A name for the number of each frame, of letters, digits and _: `prefix` and the frame's, at most `longest` signs. None is
+// that of another or a word of `module`, capitals or not.
+std::vector<std::string> frame_constants(const std::vector<ApplicationFrame>& frames,
+                                         const std::string& prefix, std::size_t longest,
+                                         std::string_view module);
+
 // Tells one measuring program from another: names, order, via points and poses (to 0.001 mm and 0.0001
-// degree) of its spots, as "SW-" and 16 hexadecimal digits. The controller holds the one of its program and
+// degree) of its spots, their speed (to 0.1 mm/s), where the robot stands at them, and the numbers and names of the frames that
+// they are measured for, as "SW-" and 16 hexadecimal digits. The controller holds the one of its program and
 // compares it at the start of measuring.
 std::string program_signature(const std::vector<MeasuringMove>& moves);
 

@@ -150,9 +150,11 @@ struct RegionSolver::Impl {
         }
     }
 
+    // What only the displacement itself makes visible is not known: a round rim shows its turn in the second
+    // order alone, in either sense alike and like a rim that has grown. And a wild measure lends no lever.
     bool refused_as_taught(std::span<const SpotObservation> spots, const CorrectionOptions& options,
                            RegionCorrection& r) {
-        taught.load(spots, options, true);
+        taught.load(spots, options, true, &accepted);
         Linearization lin;
         const State start;
         taught.linearize(start, factor, lin);
@@ -191,19 +193,15 @@ struct RegionSolver::Impl {
         int observed = 0;
         for (std::size_t n = 0; n < spots.size(); ++n) observed += system.spot(n).observed;
         r.redundancy = observed - system.free_count();
+        if (refused_as_taught(spots, options, r)) return {};
         system.fit(factor, fit);
         Verdict verdict = Verdict::agree;
         Spread spread = fit.converged ? system.spread(fit.lin, fit.state) : Spread{};
         const double level = options.outlier_significance / static_cast<double>(spots.size());
         Agreement a = agreement(system, fit, spread, factor, level);
         const bool agreed = fit.converged && a.plausible && a.smallest_p >= level;
-        if (!agreed || r.redundancy < 6 || !system.surely_observable(spread)) {
-            // Judged on the taught geometry: a wild measure that nothing contradicts must not lend the region
-            // a lever that it does not have.
-            if (refused_as_taught(spots, options, r)) return {};
-        }
         if (!agreed && options.reject_outliers && r.redundancy > 0) {
-            verdict = search.run(system, options.outlier_significance, a, fit, factor);
+            verdict = search.run(system, taught, options.outlier_significance, a, fit, factor);
             if (verdict == Verdict::found || verdict == Verdict::noisy) {
                 spread = system.spread(fit.lin, fit.state);
                 a = agreement(system, fit, spread, factor);

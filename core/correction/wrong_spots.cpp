@@ -75,6 +75,15 @@ std::size_t count_used(std::span<const double> factor) {
         std::count_if(factor.begin(), factor.end(), [](double f) { return f > 0; }));
 }
 
+// The spots kept determine the displacement: as they lie now, and not by the displacement alone.
+bool determined(const RegionSystem& system, const RegionSystem& taught, const RegionSystem::Fit& fit,
+                std::span<const double> factor) {
+    Linearization as_taught;
+    const State start;
+    taught.linearize(start, factor, as_taught);
+    return system.observability(fit.lin, fit.state).ok && taught.observability(as_taught, start).ok;
+}
+
 }  // namespace
 
 double chi_square_p(double value, int degrees) {
@@ -154,8 +163,8 @@ Agreement agreement(const RegionSystem& system, const RegionSystem::Fit& fit, co
 
 // Tries every set of `count` spots: is the rest in agreement without it? True when exactly one set explains
 // best.
-bool WrongSpotSearch::explain(const RegionSystem& system, std::size_t count, double level,
-                              std::vector<double>& factor, RegionSystem::Fit& fit, bool& tied) {
+bool WrongSpotSearch::explain(const RegionSystem& system, const RegionSystem& taught, std::size_t count,
+                              double level, std::vector<double>& factor, RegionSystem::Fit& fit, bool& tied) {
     const std::size_t n = system.size();
     int observed = 0;
     for (std::size_t i = 0; i < n; ++i) observed += system.spot(i).observed;
@@ -213,19 +222,21 @@ bool WrongSpotSearch::explain(const RegionSystem& system, std::size_t count, dou
         return false;
     }
     // The rest must still determine the displacement.
-    if (!system.observability(best_fit.lin, best_fit.state).ok) {
+    trial_.assign(n, 1.0);
+    for (const std::size_t i : best_set) trial_[i] = 0;
+    if (!determined(system, taught, best_fit, trial_)) {
         tied = true;
         return false;
     }
-    for (const std::size_t i : best_set) factor[i] = 0;
+    factor = trial_;
     fit = best_fit;
     return true;
 }
 
 // Many wrong spots: Geman-McClure weights, annealed from wide to the stated noise, then hard decisions by
 // prediction.
-bool WrongSpotSearch::graduated(const RegionSystem& system, double level, std::vector<double>& factor,
-                                RegionSystem::Fit& fit) {
+bool WrongSpotSearch::graduated(const RegionSystem& system, const RegionSystem& taught, double level,
+                                std::vector<double>& factor, RegionSystem::Fit& fit) {
     const std::size_t n = system.size();
     soft_.assign(n, 1.0);
     RegionSystem::Fit soft_fit;
@@ -289,7 +300,7 @@ bool WrongSpotSearch::graduated(const RegionSystem& system, double level, std::v
         }
         if (a.redundancy < lost || (a.redundancy < 2 * lost && smallest <= kGross)) return false;
         if (a.smallest_p < level / static_cast<double>(used) || !a.plausible || used == n) return false;
-        if (!system.observability(hard.lin, hard.state).ok) return false;
+        if (!determined(system, taught, hard, trial_)) return false;
         factor = trial_;
         fit = hard;
         return true;
@@ -299,8 +310,8 @@ bool WrongSpotSearch::graduated(const RegionSystem& system, double level, std::v
 
 // The stated sigma is too small for all: a spot is wrong when leaving it out lowers the scatter of the rest
 // beyond chance (F test on the empirical variance), one after the other.
-bool WrongSpotSearch::stands_out(const RegionSystem& system, double level, std::vector<double>& factor,
-                                 RegionSystem::Fit& fit) {
+bool WrongSpotSearch::stands_out(const RegionSystem& system, const RegionSystem& taught, double level,
+                                 std::vector<double>& factor, RegionSystem::Fit& fit) {
     const std::size_t n = system.size();
     bool any = false;
     for (std::size_t round = 0; round < n / 3; ++round) {
@@ -316,7 +327,7 @@ bool WrongSpotSearch::stands_out(const RegionSystem& system, double level, std::
             system.fit(trial_, candidate);
             if (!candidate.converged) continue;
             const Spread spread = system.spread(candidate.lin, candidate.state);
-            if (!spread.regular || !system.observability(candidate.lin, candidate.state).ok) continue;
+            if (!spread.regular || !determined(system, taught, candidate, trial_)) continue;
             const double rest = agreement(system, candidate, spread, trial_).sum_squares;
             if (rest < best) {
                 second = best;
@@ -342,8 +353,8 @@ bool WrongSpotSearch::stands_out(const RegionSystem& system, double level, std::
     return any;
 }
 
-Verdict WrongSpotSearch::run(const RegionSystem& system, double significance, const Agreement& all,
-                             RegionSystem::Fit& fit, std::vector<double>& factor) {
+Verdict WrongSpotSearch::run(const RegionSystem& system, const RegionSystem& taught, double significance,
+                             const Agreement& all, RegionSystem::Fit& fit, std::vector<double>& factor) {
     const std::size_t n = system.size();
     if (fit.converged && all.smallest_p >= significance / static_cast<double>(n)) {
         return all.plausible ? Verdict::agree : Verdict::noisy;
@@ -356,11 +367,11 @@ Verdict WrongSpotSearch::run(const RegionSystem& system, double significance, co
             searched = false;
             break;
         }
-        if (explain(system, count, significance, factor, fit, tied)) return Verdict::found;
+        if (explain(system, taught, count, significance, factor, fit, tied)) return Verdict::found;
         if (tied) return Verdict::contradictory;
     }
-    if ((!searched || n > 6) && graduated(system, significance, factor, fit)) return Verdict::found;
-    if (fit.converged && stands_out(system, significance, factor, fit)) return Verdict::noisy;
+    if ((!searched || n > 6) && graduated(system, taught, significance, factor, fit)) return Verdict::found;
+    if (fit.converged && stands_out(system, taught, significance, factor, fit)) return Verdict::noisy;
     return Verdict::contradictory;
 }
 

@@ -36,21 +36,22 @@ enum class Verdict {
 class WrongSpotSearch {
   public:
     // `fit` and `factor` (all 1) describe the fit with all spots; both are replaced when spots are left
-    // out. `all` is the agreement of that fit.
-    Verdict run(const RegionSystem& system, double significance, const Agreement& all, RegionSystem::Fit& fit,
-                std::vector<double>& factor);
+    // out. `all` is the agreement of that fit; `taught` the same spots as they were taught, which those kept
+    // must be enough of.
+    Verdict run(const RegionSystem& system, const RegionSystem& taught, double significance,
+                const Agreement& all, RegionSystem::Fit& fit, std::vector<double>& factor);
 
   private:
     struct Candidate {
         std::vector<std::size_t> out;
         double sum_squares = 0;
     };
-    bool explain(const RegionSystem& system, std::size_t count, double level, std::vector<double>& factor,
-                 RegionSystem::Fit& fit, bool& tied);
-    bool graduated(const RegionSystem& system, double level, std::vector<double>& factor,
-                   RegionSystem::Fit& fit);
-    bool stands_out(const RegionSystem& system, double level, std::vector<double>& factor,
-                    RegionSystem::Fit& fit);
+    bool explain(const RegionSystem& system, const RegionSystem& taught, std::size_t count, double level,
+                 std::vector<double>& factor, RegionSystem::Fit& fit, bool& tied);
+    bool graduated(const RegionSystem& system, const RegionSystem& taught, double level,
+                   std::vector<double>& factor, RegionSystem::Fit& fit);
+    bool stands_out(const RegionSystem& system, const RegionSystem& taught, double level,
+                    std::vector<double>& factor, RegionSystem::Fit& fit);
     std::vector<double> trial_;
     std::vector<double> soft_;
 };

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <deque>
 #include <optional>
+#include <set>
 #include <thread>
 
 #include "devices/abb/rapid.h"
@@ -108,6 +109,7 @@ class AbbRapidLink final : public RobotLink {
         SEAM_OK(ask({0, "MEASURE", {std::to_string(names.size()), program_signature(moves)}, {}, {}},
                     settings_.timeout));
         triggers_.clear();
+        written_.clear();
         ended_ = false;
         next_trigger_ = 1;
         starts_.clear();  // whatever was called for before is what is measured now
@@ -141,6 +143,7 @@ class AbbRapidLink final : public RobotLink {
         SEAM_OK(put_pose(request, base_from_frame));
         SEAM_OK(same_robot());
         SEAM_OK(pose_of(ask(std::move(request), settings_.timeout)));
+        written_.insert(name);
         return {};
     }
 
@@ -148,8 +151,13 @@ class AbbRapidLink final : public RobotLink {
         const char* word = verdict == PartVerdict::corrected ? "CORRECTED"
                            : verdict == PartVerdict::refused ? "REFUSED"
                                                              : "FAILED";
-        if (verdict == PartVerdict::corrected) SEAM_OK(same_robot());
-        SEAM_OK(ask({0, "VERDICT", {word}, text, {}}, settings_.timeout));
+        std::vector<std::string> fields = {word};
+        if (verdict == PartVerdict::corrected) {
+            SEAM_OK(same_robot());
+            fields.push_back(std::to_string(written_.size()));
+        }
+        SEAM_OK(ask({0, "VERDICT", std::move(fields), text, {}}, settings_.timeout));
+        if (verdict != PartVerdict::corrected) written_.clear();  // as on the controller
         return {};
     }
 
@@ -173,6 +181,7 @@ class AbbRapidLink final : public RobotLink {
                                       deg_from_rad(angle_rad(from, base_from_flange)) / kTeachTurn_deg_s);
         SEAM_OK(ask(std::move(request),
                     settings_.move_timeout + Milliseconds(static_cast<long>(1000 * way_s / kSlowest))));
+        SEAM_OK(standing_at(base_from_flange));
         return {};
     }
 
@@ -382,6 +391,9 @@ class AbbRapidLink final : public RobotLink {
     Clock::time_point begun_;  // when the message at the front of it began to come
     std::deque<StartSignal> starts_;
     std::deque<TriggerEvent> triggers_;
+    // Frames of the part that is measured, whatever connection they were written over: what the controller holds of them it
+    // loses with a connection and with a verdict.
+    std::set<std::string> written_;
     bool ended_ = false;
     std::uint32_t number_ = 0, next_trigger_ = 0;  // 0 = no measuring of this connection
     std::optional<std::uint32_t> start_count_;

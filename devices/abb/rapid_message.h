@@ -17,7 +17,9 @@
 //   n READ frame                      n READ frame       + pose base_from_frame
 //   n WRITE frame                     n WRITE frame      + pose as staged (the request has one too)
 //   n MEASURE count signature         n MEASURE count    compares with its program (program_signature())
-//   n VERDICT CORRECTED|REFUSED|FAILED + text     n VERDICT word
+//   n VERDICT CORRECTED frames + text             n VERDICT CORRECTED    frames written for this part; refused where it
+//                                                                        holds another number of them
+//   n VERDICT REFUSED|FAILED + text     n VERDICT word
 //   n PERMIT                          n PERMIT NONE|GIVEN|TAKEN       what became of VERDICT CORRECTED
 //   n MOVE                            n MOVE                 (with a pose; answered when standing there)
 //   n PING                            n PING

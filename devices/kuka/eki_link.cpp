@@ -120,8 +120,10 @@ class EkiLink final : public RobotLink {
     Expected<void> move_to(const Pose& base_from_flange) override {
         if (!base_from_flange.matrix().allFinite()) return input_error("the pose is not finite", where_);
         SEAM_TRY(auto from, this->base_from_flange());
-        return only_error(ask({.kind = "move", .pose = base_from_flange},
-                              timeout_ + kuka_move_time(from, base_from_flange)));
+        SEAM_OK(ask({.kind = "move", .pose = base_from_flange},
+                    timeout_ + kuka_move_time(from, base_from_flange)));
+        SEAM_OK(standing_at(base_from_flange));
+        return {};
     }
 
     std::vector<Text> take_notices() override {

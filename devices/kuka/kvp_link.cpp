@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <map>
 #include <optional>
 #include <thread>
@@ -221,19 +223,49 @@ class KvpLink final : public RobotLink {
         if (!base_from_flange.matrix().allFinite()) return input_error("the pose is not finite", where_);
         SEAM_OK(same_robot());
         SEAM_TRY(auto now, mode());
-        if (now != RobotMode::manual_reduced)
+        SEAM_TRY(auto runs, teaching_runs());
+        SEAM_TRY(auto program, read({"$PRO_NAME1[]"}));
+        std::string name = string_from_krl(program[0]);
+        std::transform(name.begin(), name.end(), name.begin(),
+                       [](unsigned char c) { return std::toupper(c); });
+        if (now != RobotMode::manual_reduced || !runs || name != "SEAMWRIGHT")
             return device_error("moving by command wants T1 with the program SEAMWRIGHT running", where_);
         SEAM_TRY(auto from, this->base_from_flange());
-        SEAM_OK(write({{"SW_MOVE_TO", krl_from_frame(base_from_flange)}, {"SW_MOVE", "TRUE"}}));
-        SEAM_OK(poll_until(timeout_ + kuka_move_time(from, base_from_flange), [&]() -> Expected<bool> {
-            auto moving = read_bool("SW_MOVE");
-            if (!moving) return moving;
-            return !*moving;
-        }));
+        auto moved = move_from(from, base_from_flange);
+        // What has failed is not driven by the next start key. Whether that can be written is not asked: the
+        // move's own Error counts.
+        if (!moved) (void)try_write({{"SW_MOVE", "FALSE"}});
+        SEAM_OK(moved);
+        SEAM_OK(standing_at(base_from_flange));
         return {};
     }
 
   private:
+    // The program goes on by itself: drives are ready and no start key is missing.
+    Expected<bool> teaching_runs() {
+        SEAM_TRY(auto values, read({"$PERI_RDY", "$PRO_STATE1"}));
+        auto ready = bool_from_krl(values[0]);
+        if (!ready) return fail(ready.error());
+        return *ready && string_from_krl(values[1]) == "#P_ACTIVE";
+    }
+    Expected<void> move_from(const Pose& from, const Pose& to) {
+        // A flag whose goal was refused would send the robot to the last one.
+        SEAM_OK(write({{"SW_MOVE_TO", krl_from_frame(to)}}));
+        SEAM_TRY(auto number, try_read({"SW_MOVE_NO"}));
+        if (number[0].done) {  // a module of before it has none
+            const auto last = int_from_krl(number[0].value);
+            if (!last) return fail(last.error());
+            SEAM_OK(write({{"SW_MOVE_NO", std::to_string(*last % 1'000'000 + 1)}}));
+        }
+        SEAM_OK(write({{"SW_MOVE", "TRUE"}}));
+        return poll_until(timeout_ + kuka_move_time(from, to), [&]() -> Expected<bool> {
+            SEAM_TRY(auto moving, read_bool("SW_MOVE"));
+            if (!moving) return true;
+            SEAM_TRY(auto runs, teaching_runs());
+            if (!runs) return device_error("the robot was stopped on its way", where_);
+            return false;
+        });
+    }
     Expected<RobotIdentity> ask_identity() {
         SEAM_TRY(auto values, read({"$KR_SERIALNO", "$TRAFONAME[]"}));
         return RobotIdentity{"kuka-kvp", "KUKA", string_from_krl(values[1]), string_from_krl(values[0])};

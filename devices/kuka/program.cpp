@@ -15,7 +15,9 @@ namespace seamwright {
 namespace {
 
 constexpr std::size_t kMostSpots = 64, kMostFrames = 32, kLongestName = 79;  // arrays of seamwright.dat
-constexpr double kFastestCp = 2.0;                                           // m/s
+constexpr std::size_t kLongestKrlName = 24;
+constexpr const char* kNoFrame = "-";  // the name of a number that no frame has
+constexpr double kFastestCp = 2.0;     // m/s
 
 Expected<void> krl_text(const std::string& text, const std::string& where) {
     const bool plain = std::all_of(text.begin(), text.end(),
@@ -63,9 +65,10 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
     if (request.moves.size() > kMostSpots)
         return input_error(Text("{} spots are more than the module holds", request.moves.size()),
                            request.project, Text("measure at most {} in one program", kMostSpots));
-    if (request.frames.size() > kMostFrames)
-        return input_error(Text("{} frames are more than the module holds", request.frames.size()),
-                           request.project, Text("give at most {}", kMostFrames));
+    const auto frames = frames_by_number(request.frames);
+    if (frames.size() > kMostFrames)
+        return input_error(Text("{} frames are more than the module holds", frames.size()), request.project,
+                           Text("give at most {}", kMostFrames));
     std::string listen;
     int port = 0, output = 0, alive = 0, command = 0;
     SettingsReader f(request.settings, "settings", kuka_eki_settings(), UnknownSettings::passed_over);
@@ -122,19 +125,33 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
                 point, n);
         path += fmt::format("LIN {}_EXIT C_DIS\n", point);
     }
-    data += "DECL REAL SW_TRAVEL=0.25\nENDDAT\n";
-    int k = 0;
-    for (const ApplicationFrame& frame : request.frames) {
-        ++k;
+    data += "DECL REAL SW_TRAVEL=0.25\n";
+    const auto constants =
+        frame_constants(request.frames, "SW_", kLongestKrlName,
+                        std::string(resources::seamwright_dat) + std::string(resources::seamwright_src) +
+                            std::string(resources::seamwright_sub_sub) + " SW_SETUP SW_TRAVEL ");
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const std::size_t k = i + 1;
+        if (!frames[i]) {
+            setup += fmt::format("; no region of this program\nSW_NAME[{},]=\"{}\"\n", k, kNoFrame);
+            continue;
+        }
+        const ApplicationFrame& frame = *frames[i];
         SEAM_OK(krl_text(frame.name, "frame of region " + frame.region_id));
+        if (frame.name == kNoFrame)
+            return input_error(Text("\"{}\" cannot be written in KRL", frame.name),
+                               "frame of region " + frame.region_id, "choose another name");
+        const std::string& constant = constants[static_cast<std::size_t>(frames[i] - request.frames.data())];
+        data += fmt::format("DECL GLOBAL CONST INT {}={}\n", constant, k);
         setup += fmt::format(
             "; region {}: SW_ACTIVATE({}) before its path\nSW_NAME[{},]=\"{}\"\nSW_FRAME[{}]={}\n",
-            program_comment(frame.region_id), k, k, frame.name, k, krl_frame(frame.base_from_frame));
+            program_comment(frame.region_id), constant, k, frame.name, k, krl_frame(frame.base_from_frame));
     }
+    data += "ENDDAT\n";
     if (!request.part_type.empty()) SEAM_OK(krl_text(request.part_type, "part type"));
     if (!request.part_type.empty()) setup += fmt::format("SW_TYPE[]=\"{}\"\n", request.part_type);
-    setup += fmt::format("SW_FRAMES={}\nSW_SIGNATURE[]=\"{}\"\n", k, program_signature(request.moves));
     const std::string signature = program_signature(request.moves);
+    setup += fmt::format("SW_FRAMES={}\nSW_SIGNATURE[]=\"{}\"\n", frames.size(), signature);
     const std::string program =
         "&ACCESS RVO1\n&COMMENT Measuring program of " + program_comment(request.project).substr(0, 60) +
         "\nDEF SEAMWRIGHT_SPOTS()\nIF NOT StrComp(SW_SIGNATURE[],\"" + signature +

@@ -7,8 +7,10 @@
 // path-synchronously at the spot (TRIGGER WHEN PATH), its via points rounded off before the entry, and the
 // application frames.
 //
-// The application calls SW_SETUP() once, SEAMWRIGHT_SPOTS() for each part and SW_ACTIVATE(n) before each
-// region's path, where n counts the regions from 1. SEAMWRIGHT_SPOTS() calls for the part (its name in
+// The application calls SW_SETUP() once, SEAMWRIGHT_SPOTS() for each part and SW_ACTIVATE(SW_name) before
+// each region's path: seamwright_spots.dat holds the number of every frame as a constant, SW_ and the frame's name (24 signs at
+// most). A region's number does not change when its spots are disabled; it has no frame then, and SW_ACTIVATE stops the robot.
+// SEAMWRIGHT_SPOTS() calls for the part (its name in
 // SW_PART[], its type in SW_TYPE[], which SW_SETUP() sets to the program's), waits until Seamwright lets it go and measures; the first SW_ACTIVATE waits for the verdict and
 // takes the permission (RobotLink). SW_CALLS=FALSE: it waits without a call; the line sets SW_CALL, or
 // Seamwright measures by command. SW_VERDICT tells an application that goes on without correction how the

@@ -54,7 +54,9 @@ std::optional<State> state_from(std::int32_t number);
 // vector.
 //
 // kSession differs from connection to connection and kBeat counts on while one lasts, five times a second or
-// more often: without them for a second the module takes back what the robot program has not yet taken.
+// more often: without them for a second the module takes back what the robot program has not yet taken. A
+// request that changes something is done with the first beat after it, on the same connection, and dropped
+// where none comes within a second: nobody waits for it any more. Command 0 takes a request back.
 enum Input : int { kNumber, kCommand, kArgument, kHigh, kLow, kSession, kBeat, kInputs };
 
 enum class Command : std::int32_t {

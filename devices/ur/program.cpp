@@ -18,6 +18,7 @@ namespace seamwright {
 namespace {
 
 constexpr double kFastest_m_s = 2.0;
+constexpr std::size_t kLongestName = 40;
 constexpr double kMostBlend_mm = 20, kLeastBlend_mm = 1;  // at points on the way
 
 // How far before the middle of three points the robot may begin to round it off: blends that overlap are
@@ -60,8 +61,9 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
     if (request.moves.size() > ur::kMostSpots)
         return input_error(Text("{} spots are more than the module holds", request.moves.size()),
                            request.project, Text("measure at most {} in one program", ur::kMostSpots));
-    if (request.frames.size() > ur::kMostFrames)
-        return input_error(Text("{} frames are more than the module holds", request.frames.size()),
+    const auto by_number = frames_by_number(request.frames);
+    if (by_number.size() > ur::kMostFrames)
+        return input_error(Text("{} frames are more than the module holds", by_number.size()),
                            request.project, Text("give at most {}", ur::kMostFrames));
     int first = ur::kFirstRegister, output = 0;
     SettingsReader f(request.settings, "settings", ur_rtde_settings(), UnknownSettings::passed_over);
@@ -99,10 +101,17 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
                               move.stop_at_trigger ? "True" : "False");
         last = &move.exit;
     }
-    std::map<std::int32_t, std::string> names;
+    std::map<std::int32_t, std::string> names = {{0, ""}};  // of a number that no frame has
     std::vector<std::string> numbers, frames;
     std::string list;
-    for (const ApplicationFrame& frame : request.frames) {
+    const auto constants = frame_constants(request.frames, "sw_", kLongestName, resources::seamwright_script);
+    for (const ApplicationFrame* numbered : by_number) {
+        if (!numbered) {
+            numbers.emplace_back("0");
+            frames.push_back(script_pose(Pose::Identity()));
+            continue;
+        }
+        const ApplicationFrame& frame = *numbered;
         const Text where("frame of region {}", frame.region_id);
         SEAM_OK(check_pose(frame.base_from_frame, where));
         const auto [at, fresh] = names.emplace(ur::frame_number(frame.name), frame.name);
@@ -112,8 +121,9 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
                 "name one of them otherwise");
         numbers.push_back(std::to_string(at->first));
         frames.push_back(script_pose(frame.base_from_frame));
-        list += fmt::format("# sw_activate({}): region {}, frame {}\n", frames.size(),
-                            program_comment(frame.region_id), program_comment(frame.name));
+        const std::string& constant = constants[static_cast<std::size_t>(numbered - request.frames.data())];
+        list += fmt::format("# sw_activate({0}): region {1}, frame {2}\nglobal {0} = {3}\n", constant,
+                            program_comment(frame.region_id), program_comment(frame.name), frames.size());
     }
     const std::size_t count = frames.size();
     if (count == 0) numbers = {"0"}, frames = {script_pose(Pose::Identity())};  // URScript has no empty list

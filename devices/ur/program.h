@@ -10,6 +10,9 @@
 
 namespace seamwright {
 
+// Of every motion of the measuring program: a= in sw_pass.
+inline constexpr double kUrAcceleration_mm_s2 = 1200;
+
 // Error (input): more than 64 spots or 32 frames, two frames of one name or of one number (module.h), a speed
 // over 2 m/s, a pose that is not finite or beyond 100 m.
 Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& request);

@@ -7,7 +7,7 @@
 // and whether it stands under remote control, tells its dashboard server (port 29999).
 //
 // A frame is a pose of the module, known by its name; the application's path runs in
-// pose_trans(sw_activate(n), p). The flange is actual_TCP_pose without tcp_offset; controllers that do not
+// pose_trans(sw_activate(sw_name), p). The flange is actual_TCP_pose without tcp_offset; controllers that do not
 // tell the offset are taken as having none, as the module has while it measures.
 //
 // Modes: fault (emergency stop, violation, safety fault), stopped (protective or safeguard stop, brakes, no

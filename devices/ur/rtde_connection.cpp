@@ -17,6 +17,8 @@ using ur::Command;
 
 constexpr Timeout kStale{100};  // older state is waited for anew
 constexpr Timeout kBeat{100};   // module.h
+// While an answer is waited for: the module acts on the next beat after a request.
+constexpr Timeout kAskingBeat{20};
 
 Timeout left(std::chrono::steady_clock::time_point until) {
     return std::max(Timeout(0), std::chrono::ceil<Timeout>(until - std::chrono::steady_clock::now()));
@@ -70,7 +72,14 @@ Expected<void> RtdeLink::send_request() {
     return {};
 }
 
+// What was asked is taken out of the registers, or a program that was paused would do it when it goes on.
 tl::unexpected<Error> RtdeLink::fail(Error error) {
+    if (connection_ && connection_->is_open() && !last_request_.empty()) {
+        std::vector<rtde::Value> nothing = last_request_;
+        nothing[ur::kCommand] = std::int32_t{0};
+        const auto bytes = rtde::package_bytes({rtde::Type::data, rtde::data_payload(inputs_, nothing)});
+        (void)connection_->send(bytes_of(bytes), kAskingBeat);
+    }
     connection_.reset();
     dashboard_.close();  // of the same controller: who answers is asked there, so anew
     last_request_.clear();
@@ -271,6 +280,9 @@ Expected<Pose> RtdeLink::ask(Command command, std::int32_t argument, std::int32_
     if (!ur::is_module(state->numbers[ur::kModule]))
         return device_error("the module seamwright.script does not run", where_,
                             "load what `seamwright robot-program --brand ur` writes and start the program");
+    if (state->runtime != kPlaying)
+        return device_error("the controller's program is stopped or paused", where_,
+                            "start its program on the controller");
     const std::int32_t before = state->numbers[ur::kAnswered];
     number_ = number_ >= 2'000'000'000 ? 1 : number_ + 1;
     last_request_ = {number_, static_cast<std::int32_t>(command), argument, high, low, 0, 0};
@@ -278,6 +290,7 @@ Expected<Pose> RtdeLink::ask(Command command, std::int32_t argument, std::int32_
     const auto until = Clock::now() + timeout.value_or(timeout_);
     SEAM_OK(send_request());
     for (;;) {
+        next_beat_ = std::min(next_beat_, Clock::now() + kAskingBeat);
         SEAM_OK(next_state(std::min(until, Clock::now() + timeout_)));
         const std::int32_t answered = state_->numbers[ur::kAnswered];
         if (answered == number_) break;

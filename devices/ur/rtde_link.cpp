@@ -180,8 +180,14 @@ Expected<Permission> RtdeLink::permission() {
 }
 
 Expected<void> RtdeLink::move_to(const Pose& base_from_flange) {
-    const std::lock_guard lock(mutex_);
     if (!base_from_flange.matrix().allFinite()) return input_error("the pose is not finite", where_);
+    SEAM_OK(drive_to(base_from_flange));
+    SEAM_OK(standing_at(base_from_flange));
+    return {};
+}
+
+Expected<void> RtdeLink::drive_to(const Pose& base_from_flange) {
+    const std::lock_guard lock(mutex_);
     SEAM_OK(same_robot());
     SEAM_TRY(auto at, flange());
     // Twice what the way takes at the programmed speed; a slider may have slowed the robot down.

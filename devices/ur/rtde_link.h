@@ -61,6 +61,7 @@ class RtdeLink final : public RobotLink {
         Clock::time_point at{};
     };
 
+    Expected<void> drive_to(const Pose& base_from_flange);
     Expected<RobotMode> present_mode();
     Expected<Pose> flange();
     Expected<RobotIdentity> ask_identity();

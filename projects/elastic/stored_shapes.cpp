@@ -68,7 +68,9 @@ Expected<StoredShapes> stored_shapes(const ProjectFile& file, const std::string&
     std::map<std::int64_t, bool> same;
     SEAM_TRY(const auto runs, file.runs());
     for (const RunSummary& summary : runs) {
-        if (summary.status == RunStatus::interrupted || summary.spots == 0) continue;
+        if (summary.status == RunStatus::interrupted || summary.status == RunStatus::cancelled ||
+            summary.status == RunStatus::device || summary.spots == 0)
+            continue;
         auto known = same.find(summary.setup);
         if (known == same.end()) {
             SEAM_TRY(const Project then, file.load_setup(summary.setup));

@@ -13,9 +13,10 @@
 namespace seamwright {
 namespace {
 
-constexpr double kJoggedMm = 0.5, kJoggedDeg = 0.1;
 // What a frame may come later than the latest of the run; and what it takes where none came after its trigger.
 constexpr std::chrono::milliseconds kLaterStill{100}, kNoLatency{500};
+// A frame this far off its own trigger, and so near to a neighbour's, is the neighbour's.
+constexpr std::chrono::milliseconds kNotItsOwn{120}, kTheOthers{60};
 
 std::int64_t median(std::vector<std::int64_t> of) {
     const auto middle = of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2);
@@ -45,6 +46,19 @@ MeasuringMove measuring_move(const Spot& spot, const Pose& flange_from_sensor) {
     return move;
 }
 
+int region_number(const Project& project, const std::string& region_id, const std::string& robot_id) {
+    int number = 0;
+    for (const Region& region : project.regions) {
+        const bool its = std::any_of(project.spots.begin(), project.spots.end(), [&](const Spot& spot) {
+            return spot.robot_id == robot_id && std::find(region.spot_ids.begin(), region.spot_ids.end(),
+                                                          spot.id) != region.spot_ids.end();
+        });
+        if (its) ++number;
+        if (region.id == region_id) return its ? number : 0;
+    }
+    return 0;
+}
+
 std::vector<MeasuringMove> measuring_program(const Project& project, const std::string& robot_id) {
     std::vector<MeasuringMove> moves;
     for (const Spot& spot : project.spots) {
@@ -52,6 +66,10 @@ std::vector<MeasuringMove> measuring_program(const Project& project, const std::
         const Calibration* calibration = calibration_of(project, spot);
         moves.push_back(
             measuring_move(spot, calibration ? calibration->flange_from_sensor : Pose::Identity()));
+        for (const Region& region : project.regions)
+            if (std::find(region.spot_ids.begin(), region.spot_ids.end(), spot.id) != region.spot_ids.end())
+                moves.back().frames.push_back(
+                    {region_number(project, region.id, robot_id), region.frame_name});
     }
     return moves;
 }
@@ -79,6 +97,8 @@ Expected<FramePtr> next_frame(ProfileSource& sensor, std::chrono::milliseconds t
                               const std::stop_token& cancel) {
     auto frame = wait_in_slices(timeout, cancel,
                                 [&](std::chrono::milliseconds slice) { return sensor.wait_next(slice); });
+    if (!frame && is_silence(frame.error()))  // of all slices, not of the last one
+        frame.error().what = Text("{}: no frame within {} ms", kNoAnswer, timeout.count());
     if (frame && !*frame) return device_error("the sensor gave no frame");
     return frame;
 }
@@ -118,6 +138,7 @@ Expected<FramePtr> TriggeredFrames::in_order(const TriggerEvent& trigger, std::c
     }
     if (!expected_) expected_ = frame->sequence;
     const std::uint64_t expected = (*expected_)++;
+    in_doubt_ = true;
     if (frame->sequence < expected)
         return device_error(Text("frame {} came where frame {} was due", frame->sequence, expected),
                             Text("sensor {}", setup_.id),
@@ -129,6 +150,7 @@ Expected<FramePtr> TriggeredFrames::in_order(const TriggerEvent& trigger, std::c
         lost->sequence = expected;
         lost->host_time_ns = trigger.host_time_ns;
         lost->spot_id = trigger.spot_id;
+        in_doubt_ = false;
         return lost;
     }
     last_trigger_ns_ = trigger.host_time_ns;
@@ -137,10 +159,17 @@ Expected<FramePtr> TriggeredFrames::in_order(const TriggerEvent& trigger, std::c
         return device_error(Text("frame {} came {:.1f} s {} the trigger of spot {}", frame->sequence,
                                  std::abs(std::chrono::duration<double>(apart).count()),
                                  apart.count() < 0 ? "before" : "after", trigger.spot_id),
-                            Text("sensor {}", setup_.id), "check the trigger line between robot and sensor");
+                            Text("sensor {}", setup_.id),
+                            apart.count() < 0
+                                ? Text("the robot's message came late, or the sensor was triggered by "
+                                       "something else: check network and trigger line")
+                                : Text("check the trigger line between robot and sensor"));
+    in_doubt_ = false;
     if (frame->status == FrameStatus::ok && frame->device_time_ns != 0) {
         device_after_ns_.push_back(frame->device_time_ns - trigger.host_time_ns);
         host_after_ns_.push_back(apart.count());
+        trigger_ns_.push_back(trigger.host_time_ns);
+        spots_.push_back(trigger.spot_id);
     }
     longest_ns_ = std::max(longest_ns_, apart.count());
     return frame;
@@ -169,9 +198,37 @@ Expected<void> TriggeredFrames::finish() {
         if (!left) break;
         more = !is_over(**left);
     }
+    in_doubt_ = true;
     if (more)
         return device_error("the sensor exposed more often than the robot fired",
                             Text("sensor {}", setup_.id), "check the trigger line between robot and sensor");
+    SEAM_OK(own_triggers());
+    in_doubt_ = false;
+    return {};
+}
+
+// A message that came late moves a trigger away from its frame, but not on to that of a neighbour.
+Expected<void> TriggeredFrames::own_triggers() const {
+    using std::chrono::nanoseconds;
+    if (trigger_ns_.size() < 3) return {};
+    const std::int64_t usual = median(device_after_ns_);
+    // Ticks that are no nanoseconds tell nothing.
+    const double robots = static_cast<double>(trigger_ns_.back() - trigger_ns_.front());
+    const double sensors = robots + static_cast<double>(device_after_ns_.back() - device_after_ns_.front());
+    if (!(sensors > 0.3 * robots && sensors < 3 * robots)) return {};
+    for (std::size_t i = 0; i < trigger_ns_.size(); ++i) {
+        const std::int64_t own = device_after_ns_[i] - usual;
+        if (std::chrono::abs(nanoseconds(own)) < kNotItsOwn) continue;
+        for (const std::size_t k : {i - 1, i + 1}) {
+            if (k >= trigger_ns_.size()) continue;  // i - 1 of the first, too
+            if (std::chrono::abs(nanoseconds(own + trigger_ns_[i] - trigger_ns_[k])) > kTheOthers) continue;
+            return device_error(Text("the frame of spot {} was exposed when the robot fired for spot {}",
+                                     spots_[i], spots_[k]),
+                                Text("sensor {}", setup_.id),
+                                "a trigger was missed and another came twice: check the trigger line between "
+                                "robot and sensor");
+        }
+    }
     return {};
 }
 
@@ -190,15 +247,16 @@ Expected<void> fired_near(const TriggerEvent& trigger, const Spot& spot) {
 
 Expected<Pose> stand_at(RobotLink& robot, const std::string& spot_id, const Pose& base_from_flange) {
     const auto moved = robot.move_to(base_from_flange);
-    auto at = robot.base_from_flange();
-    if (moved && at) return at;
-    if (!at) return moved ? at : tl::unexpected(moved.error());
-    const double off_mm = distance_mm(*at, base_from_flange);
-    const double off_deg = deg_from_rad(angle_rad(*at, base_from_flange));
-    if (off_mm <= kJoggedMm && off_deg <= kJoggedDeg) return at;
-    return device_error(Text("the robot stands {:.2f} mm and {:.2f} deg off the pose to teach at ({})",
-                             off_mm, off_deg, moved.error().what),
-                        Text("spot {}", spot_id), "jog it there");
+    if (!moved && !robot.base_from_flange()) return tl::unexpected(moved.error());
+    auto at = robot.standing_at(base_from_flange);  // moved, or jogged there
+    if (at) return at;
+    Error error = at.error();
+    if (error.where.empty()) error.where = Text("spot {}", spot_id);
+    if (!moved) {
+        error.what = Text("{} ({})", error.what, moved.error().what);
+        error.mend = "jog it there";
+    }
+    return tl::unexpected(std::move(error));
 }
 
 Expected<SoftwareTriggered> SoftwareTriggered::begin(ProfileSource& sensor) {

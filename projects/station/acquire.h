@@ -25,6 +25,10 @@ struct AcquireLimits {
 // Via points -> entry -> trigger -> exit, the pass along the sensor's Y with the orientation held.
 MeasuringMove measuring_move(const Spot& spot, const Pose& flange_from_sensor);
 
+// A region's number in the programs of a robot: its place, from 1, among the regions with spots of that robot. Disabled spots
+// count, so that no number changes with them. 0: it has none.
+int region_number(const Project& project, const std::string& region_id, const std::string& robot_id);
+
 // The measuring program of a robot: its enabled spots in the project's order. A spot without calibration is
 // passed with the flange's Y as its sensor's.
 std::vector<MeasuringMove> measuring_program(const Project& project, const std::string& robot_id);
@@ -60,7 +64,11 @@ class TriggeredFrames {
                           const std::function<void(const Frame& dropped)>& dropped);
     // After the last trigger: Error when the sensor has exposed more often than the robot fired. Waits as long as the last
     // trigger's own frame may still be on its way, had it been given an earlier one.
+    // A frame that by the sensor's clock was exposed when the robot fired for the spot before or after is one, too: a pulse
+    // that was missed and one that came twice leave as many frames as triggers.
     Expected<void> finish();
+    // After an Error of at() or finish() that says that frames and triggers may belong together otherwise.
+    bool in_doubt() const { return in_doubt_; }
 
   private:
     Expected<FramePtr> in_order(const TriggerEvent& trigger, std::chrono::milliseconds timeout,
@@ -74,8 +82,13 @@ class TriggeredFrames {
     const SensorSetup& setup_;
     FramePtr early_;  // came already, belongs to a later trigger
     std::optional<std::uint64_t> expected_;
+    // finish(): whether a frame was exposed when the robot fired for another spot.
+    Expected<void> own_triggers() const;
     // Of sound frames: their time less that of their trigger. The clocks need not have the same beginning.
     std::vector<std::int64_t> device_after_ns_, host_after_ns_;
+    std::vector<std::int64_t> trigger_ns_;
+    std::vector<std::string> spots_;
+    bool in_doubt_ = false;
     std::int64_t last_trigger_ns_ = 0, longest_ns_ = 0;
 };
 

@@ -9,6 +9,7 @@
 #include "devices/capture/capture.h"
 #include "devices/line/line_link.h"
 #include "devices/registry.h"
+#include "devices/ur/program.h"
 #include "projects/drift/drift_point.h"
 #include "projects/gate/safety_gate.h"
 #include "projects/measure/fields.h"
@@ -161,6 +162,17 @@ void check_trigger(const Project& project, const Spot& spot, const Text& where, 
         "(measure-trigger)");
 }
 
+// The program of Universal Robots stands at the entry. Another brand's runs through it at travelling speed.
+void check_run_up(const Project& project, const Spot& spot, const Text& where, Findings& findings) {
+    const RobotSetup* robot = find_robot(project, spot.robot_id);
+    if (!robot || robot->driver != "ur-rtde" || !spot.enabled || spot.stop_at_trigger) return;
+    const double needed_mm = spot.speed_mm_s * spot.speed_mm_s / (2 * kUrAcceleration_mm_s2);
+    findings.unless(needed_mm <= spot.entry_mm, where,
+                    Text("over an entry of {} mm the robot does not reach the speed of {} mm/s",
+                         spot.entry_mm, spot.speed_mm_s),
+                    Text("give an entry of {:.0f} mm or less speed", std::ceil(needed_mm)));
+}
+
 void check_spot(const Project& project, const Spot& spot, Findings& findings) {
     const Text where("spot {}", spot.id);
     findings.unless(known(project.sensors, spot.sensor_id), where,
@@ -178,6 +190,7 @@ void check_spot(const Project& project, const Spot& spot, Findings& findings) {
                     where, "entry and exit must be between 0 and 1000 mm");
     check_trigger(project, spot, where, findings);
     findings.concern(Concern::setup);
+    check_run_up(project, spot, where, findings);
     if (auto finder = make_feature_finder(spot.feature); !finder)
         findings.add(joined(where, "", ".feature"), finder.error().what, finder.error().mend);
     findings.unless(spot.reference_mm.allFinite(), where, "the reference is not a finite point",

@@ -47,7 +47,8 @@ Expected<ProgramRequest> program_request(const Project& whole, const RobotId& ro
                 return input_error(
                     Text("its frame \"{}\" is that of region {} too", region.frame_name, other.region_id),
                     Text("region {}", region.id), "give each region a frame of its own");
-        request.frames.push_back({region.id, region.frame_name, region.base_from_frame});
+        request.frames.push_back({region.id, region.frame_name, region.base_from_frame,
+                                  region_number(project, region.id, robot->id)});
     }
     return request;
 }

@@ -50,6 +50,8 @@ struct RunOptions {
     std::stop_token cancel;
     std::chrono::milliseconds hold = kHold;  // see HoldOptions
     std::function<bool()> part_over = {};    // see HoldOptions
+    // A robot that did not acknowledge how the part ended (refused or failed): it may wait for that still.
+    std::function<void(const std::string& robot_id, PartVerdict verdict)> untold = {};
     std::function<void(const std::string& robot_id)> robot_goes =
         {};                                            // its program took the start of measuring
     std::function<void(const RunProgress&)> progress;  // called on the running thread

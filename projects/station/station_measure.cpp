@@ -123,13 +123,26 @@ Expected<void> Station::Impl::measure_all(Job& job) {
                                     job.options.paint, &paint_factors));
         job.light.emplace(id, std::move(light));
     }
-    for (const std::string& id : robot_ids) {
+    const auto measured = [&]() -> Expected<void> {
+        for (const std::string& id : robot_ids) {
+            if (job.options.cancel.stop_requested()) return {};
+            SEAM_OK(measure_robot(job, id));
+        }
         if (job.options.cancel.stop_requested()) return {};
-        SEAM_OK(measure_robot(job, id));
-    }
-    if (job.options.cancel.stop_requested()) return {};
-    for (auto& [id, frames] : job.frames) SEAM_OK(frames.finish());
-    return {};
+        for (auto& [id, frames] : job.frames) SEAM_OK(frames.finish());
+        return {};
+    }();
+    // What may be another spot's frame is no measurement of this one, for nobody who reads the run later.
+    if (!measured)
+        for (const Spot& spot : job.project.spots) {
+            const auto frames = job.frames.find(spot.sensor_id);
+            if (!spot.enabled || frames == job.frames.end() || !frames->second.in_doubt()) continue;
+            SpotMeasurement& m = job.measurement(spot.id);
+            if (m.status != SpotStatus::measured) continue;
+            m.status = SpotStatus::not_measured;
+            m.message = "frames and triggers of this run may belong together otherwise";
+        }
+    return measured;
 }
 
 }  // namespace seamwright

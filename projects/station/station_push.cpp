@@ -45,6 +45,7 @@ bool Station::Impl::confirm_all(Job& job, PartVerdict verdict) {
         auto told = robots.at(id)->confirm(verdict, job.run.message.english());
         if (told) continue;
         all = false;
+        if (job.options.untold) job.options.untold(id, verdict);
         // The run's record stands either way; a file that takes no event has its own Error at the next
         // save.
         (void)record_event(job, EventKind::alarm, id,

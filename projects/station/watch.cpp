@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <thread>
 #include <utility>
 
@@ -211,6 +212,7 @@ class Watch {
                 ready();
                 caller_ = setup.id;
                 if (stranded_ && stranded_->first == caller_) stranded_.reset();
+                untold_.erase(caller_);
                 newest(*robot, setup.id, *start);
                 if (expired(*robot, setup.id, *start)) return std::nullopt;
                 return std::optional(*start);
@@ -220,6 +222,7 @@ class Watch {
                 lost(Text("robot {}", setup.id), start.error());
                 return std::nullopt;
             }
+            tell_again(*robot, setup.id);
         }
         ready();
         return line ? line_call() : std::nullopt;
@@ -284,6 +287,19 @@ class Watch {
     void refuse(RobotLink& robot, const std::string& id, const Text& why) {
         if (auto told = robot.confirm(PartVerdict::refused, why.english()); !told)
             tell(WatchLevel::warning, watched::RobotNotice{}, Text("robot {}: {}", id, told.error().text()));
+    }
+
+    // A robot that was away when its part ended waits for the verdict for good.
+    void tell_again(RobotLink& robot, const std::string& id) {
+        const auto untold = untold_.find(id);
+        if (untold == untold_.end() || std::chrono::steady_clock::now() < untold->second.at) return;
+        if (auto told = robot.confirm(untold->second.verdict, "the part before was not corrected")) {
+            tell(WatchLevel::info, watched::RobotNotice{},
+                 Text("robot {}: told now how its part ended ({})", id, to_string(untold->second.verdict)));
+            untold_.erase(untold);
+        } else {
+            untold->second.at = std::chrono::steady_clock::now() + options_.call_again_first;
+        }
     }
 
     void let_call_again() {
@@ -352,6 +368,7 @@ class Watch {
         // The link is here to stay: held until the application has begun, or will not any more.
         run.hold = kHoldForEver;
         run.part_over = [&] { return part_called(); };
+        run.untold = [&](const std::string& id, PartVerdict verdict) { untold_[id] = {verdict, {}}; };
         bool went = false;
         run.robot_goes = [&](const std::string& id) { went = went || id == caller_; };
         run.progress = [&](const RunProgress& p) {
@@ -445,6 +462,11 @@ class Watch {
     // Which robot waits in front of a part that failed before it went, and when it may be refused.
     std::optional<std::pair<std::string, std::chrono::steady_clock::time_point>> stranded_;
     std::chrono::milliseconds call_again_;
+    struct Untold {
+        PartVerdict verdict;
+        std::chrono::steady_clock::time_point at;  // of the next attempt
+    };
+    std::map<std::string, Untold> untold_;  // by robot
 };
 
 }  // namespace

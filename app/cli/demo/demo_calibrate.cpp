@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/cli/demo/demo.h"
+#include "app/cli/demo/demo_detail.h"
 #include "core/calibration/camera/lens.h"
 #include "core/calibration/sphere/tcp_sphere.h"
 #include "core/calibration/stripe/stripe_camera.h"
@@ -43,7 +43,7 @@ auto solve_with_further_looks(std::size_t views, int& looks_again, const Take& t
 
 Expected<FramePtr> snap(ProfileSource& sensor) {
     SEAM_OK(sensor.trigger(""));
-    return sensor.wait_next(std::chrono::milliseconds(5000));
+    return sensor.wait_next(kDrawing);
 }
 
 Expected<FramePtr> look(const SimulatedCell& cell, ProfileSource& sensor, RobotLink& robot,

@@ -1,10 +1,15 @@
 #pragma once
 // Shared by the demo's sources.
 
+#include <chrono>
+
 #include "app/cli/demo/demo.h"
 #include "projects/station/station.h"
 
 namespace seamwright::cli {
+
+// The cell draws in this very program, for as long as a busy machine makes it: so long a frame is waited for.
+inline constexpr std::chrono::minutes kDrawing{2};
 
 // Where the frames that the robot holds put spots and bead of the project's regions, against where the part truly is.
 Expected<void> judge(const SimulatedCell& cell, const Project& project, RobotLink& robot, DemoPart& part);

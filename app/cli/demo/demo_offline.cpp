@@ -85,6 +85,7 @@ Expected<DemoOffline> run_offline(const DemoOptions& options, const DemoOutcome&
     progress("offline: not confirmed, the gate refuses");
     world.set_mode(RobotMode::automatic);
     RunOptions dry;
+    dry.limits.frame_timeout = kDrawing;
     dry.part_id = "not confirmed";
     SEAM_TRY(const auto refused, station.run(dry));
     for (const Text& reason : refused.regions.front().refusals) {
@@ -108,6 +109,7 @@ Expected<DemoOffline> run_offline(const DemoOptions& options, const DemoOutcome&
             world.set_part(part.truth);
             SEAM_OK(reset_frames(robot, project));
             RunOptions run;
+            run.limits.frame_timeout = kDrawing;
             run.part_id = same.run.part_id;
             run.push = true;
             SEAM_TRY(auto record, station.run(run));

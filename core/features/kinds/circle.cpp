@@ -363,8 +363,10 @@ class CircleFinder final : public FeatureFinder {
         if (feature.status != FeatureStatus::ok || known_ > 0) return feature;
         const Circle& circle = answer_;
         const double sigma = std::max({noise.point_mm, noise.alone_mm, kCircleLeastGate_mm});
-        if (feature.rms_mm < kRivalMisfit * sigma) return feature;
-        const double least = kRivalGain * sigma * sigma * std::max(1.0, noise.apart());
+        const double apart = std::max(1.0, noise.apart());
+        // Of neighbours that share their noise the profile tells it too small.
+        if (feature.rms_mm < kRivalMisfit * std::sqrt(std::min(apart, 3.0)) * sigma) return feature;
+        const double least = kRivalGain * sigma * sigma * apart;
         const double gate = kCircleGate * feature.rms_mm;
         const Piece* worst = nullptr;
         double most = 0;

@@ -7,9 +7,10 @@
 // takes more than chance from the sum of squares, then it is the one before, and one less where the bow is clear all
 // the same: just below what is seen, a form that is none still moves the vertex. Vertex t = -b / (2 a), h = c - b^2 /
 // (4 a); the covariance is that of (a, b, c) carried through these, noise from the residuals, widened where
-// neighbours are alike (contour_noise.h). The contour need not be a parabola (an arc between flanks, a ridge that
-// noise hides): by how much a quartic through the same points has its vertex elsewhere, beyond what noise makes of
-// the difference, is added.
+// neighbours are alike (contour_noise.h). The contour need not be a parabola (a bead that leans, an arc between flanks, a
+// ridge that noise hides), and noise may hide that. The answer is the mean of the vertices of the parabola and of a quartic
+// through the same points, weighted by exp(-chi^2 / 2 - unknowns / 2) as in arc_fit.h, and the covariance has their
+// disagreement and a quarter of what the quartic moves, for the powers that it has not.
 //
 // Where the contour has no smooth extremum (a ridge of a corner, the end of a slope) the parabola's vertex
 // means nothing: the status is then not_found, unless the extreme point is a contour's end, which
@@ -41,6 +42,9 @@ constexpr double kShortestFit_mm = 2,
                  kLongerFit = 1.25;  // where the length is not given: the first, and by how much each grows
 constexpr double kClearBow = 15;     // standard deviations: less length would do
 constexpr double kNoParabola = 4;    // chi^2 of the quartic's two unknowns: the shape has left the parabola
+constexpr double kQuarticPrice = 2;  // chi^2 that its two unknowns cost
+constexpr double kQuarticsOwn =
+    0.25;  // of the square by which it moves the vertex: what a further power might
 constexpr double kNoParabolaFlat = 12;  // the same while no bow is seen
 constexpr double kParabolaKept = 0.95;  // of the points, within the gate: fewer, and it is none
 constexpr double kBothSides = 0.45;     // of the fitted length, that a longer one must see on either side
@@ -87,6 +91,7 @@ class Extremum final : public FeatureFinder {
         if (!top.piece)
             return refused(FeatureStatus::no_points,
                            Text("no unbroken piece of {} points in the window", kFewestForApex));
+        noise_ = points_.noise();
         fit_length_ = given_ > 0 ? given_ : kShortestFit_mm;
         Parabola fit = parabola_at(t, h, sign, top);
         if (!(given_ > 0)) fit = longest(t, h, sign, top, fit);
@@ -100,7 +105,8 @@ class Extremum final : public FeatureFinder {
         }
         feature.rms_mm = std::sqrt(fit.sigma2 * (fit.used - 3) / fit.used);
         const double a = fit.coefficient[0], b = fit.coefficient[1], c = fit.coefficient[2];
-        const Eigen::Matrix3d covariance = fit.sigma2 * fit.normal.ldlt().solve(Eigen::Matrix3d::Identity());
+        const Eigen::Matrix3d covariance =
+            fit.variance * fit.normal.ldlt().solve(Eigen::Matrix3d::Identity());
         const double vertex = fit.bent ? -b / (2 * a) : 0;
         if (bow_of(fit) < kLeastBow) {
             feature.status = FeatureStatus::ill_conditioned;
@@ -112,8 +118,7 @@ class Extremum final : public FeatureFinder {
         }
         // A ridge is no summit: the parabola's misfit stands out against both the noise and its own bow.
         // Of neighbours that share their noise it is more than these tell.
-        const double noise =
-            std::max(contour_noise_mm(points_.x, points_.z, scratch_), points_.noise().alone_mm);
+        const double noise = std::max(contour_noise_mm(points_.x, points_.z, scratch_), noise_.alone_mm);
         const double sag = std::abs(a) * 0.25;
         const bool ridge = feature.rms_mm > std::max(kRidgeNoise * noise, kRidgeSag * sag);
         const bool seen_on_both_sides = fit.low <= -kLeastSide && fit.high >= kLeastSide;
@@ -126,11 +131,11 @@ class Extremum final : public FeatureFinder {
         j.row(0) *= fit_length_;
         const Shape shape = other_shape(t, h, sign, *top.piece, fit, vertex);
         Eigen::Matrix2d c_th = shape.alike * j * covariance * j.transpose();
-        const double place = fit.centre + vertex * fit_length_;
-        const double height = fit.origin + sign * (c - b * b / (4 * a));
+        const double place = fit.centre + vertex * fit_length_ + shape.by.x();
+        const double height = fit.origin + sign * (c - b * b / (4 * a) + shape.by.y());
         c_th(0, 1) *= sign;
         c_th(1, 0) *= sign;
-        c_th.diagonal() += shape.off2;
+        c_th.diagonal() += shape.more_t_h;
         if (upright) {
             feature.point_mm = {place, height};
             feature.covariance_mm2 = c_th;
@@ -154,7 +159,8 @@ class Extremum final : public FeatureFinder {
     struct Parabola {
         Eigen::Vector3d coefficient = Eigen::Vector3d::Zero();
         Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-        double sigma2 = 0, centre = 0, origin = 0;
+        double sigma2 = 0, variance = 0;  // of its points; and as that of a few is known (pooled_sigma())
+        double centre = 0, origin = 0;
         double low = 0, high = 0;  // u that was seen
         int used = 0, there = 0;   // within the gate, and all
         bool bent = false;         // outwards
@@ -212,6 +218,8 @@ class Extremum final : public FeatureFinder {
             if (fit.used < kFewestForApex) return;
             fit.coefficient = fit.normal.ldlt().solve(right);
             fit.sigma2 = std::max(0.0, hh - right.dot(fit.coefficient)) / (fit.used - 3);
+            const PooledSigma pooled = pooled_sigma(std::sqrt(fit.sigma2), fit.used - 3, noise_);
+            fit.variance = pooled.sigma_mm * pooled.sigma_mm * pooled.widening;
             gate = kApexGate * std::sqrt(fit.sigma2) + kApexLeastGate_mm;
         }
     }
@@ -219,10 +227,11 @@ class Extremum final : public FeatureFinder {
     // What a quartic through the same points says beside the parabola; where they do not know one, nothing.
     using Vector5 = Eigen::Matrix<double, 5, 1>;
     struct Shape {
-        Eigen::Vector2d off2 =
-            Eigen::Vector2d::Zero();  // squares, without noise, of its vertex off the other's, in t and h
-        double alike = 1;             // contour_noise.h, of its residuals
-        double more = 0;              // chi^2 that its two further unknowns take
+        Eigen::Vector2d by =
+            Eigen::Vector2d::Zero();  // by how much it moves the vertex, in t and h, as far as it counts
+        Eigen::Vector2d more_t_h = Eigen::Vector2d::Zero();  // the variances that it adds
+        double alike = 1;                                    // contour_noise.h, of its residuals
+        double more = 0;                                     // chi^2 that its two further unknowns take
     };
     Shape other_shape(const std::vector<double>& t, const std::vector<double>& h, double sign,
                       const FeaturePoints::Piece& piece, const Parabola& fit, double vertex) const {
@@ -257,27 +266,32 @@ class Extremum final : public FeatureFinder {
         const Vector5 c = solver.solve(right);
         Shape shape;
         for (std::size_t i = 0; i < rows_.size(); ++i) scratch_[i] -= rows_[i].dot(c);
-        shape.alike = alike_widening(scratch_, 5, points_.noise());
-        const double quartic = std::max(0.0, hh - right.dot(c)), sigma2 = shape.alike * quartic / (used - 5);
+        shape.alike = alike_widening(scratch_, 5, noise_);
+        const double quartic = std::max(0.0, hh - right.dot(c));
+        const PooledSigma pooled = pooled_sigma(std::sqrt(quartic / (used - 5)), used - 5, noise_);
+        const double sigma2 = shape.alike * pooled.sigma_mm * pooled.sigma_mm * pooled.widening;
         shape.more = (parabola - quartic) / std::max(sigma2, kApexLeastGate_mm * kApexLeastGate_mm);
         const Eigen::Matrix2d full = solver.solve(Eigen::Matrix<double, 5, 2>::Identity()).topRows<2>();
         const Eigen::Matrix3d few = normal.topLeftCorner<3, 3>().ldlt().solve(Eigen::Matrix3d::Identity());
         const double bow = 2 * fit.coefficient[0];  // of both: the quartic's own says little at its middle
-        const double shift = std::clamp(c[1] / bow, -kFarthest, kFarthest);
+        const double shift = std::clamp(-c[1] / bow, -kFarthest, kFarthest);
         const double summit =
             fit.coefficient[2] + vertex * (fit.coefficient[1] + vertex * fit.coefficient[0]);
         const double rise = c[0] - summit;
-        const double shift_noise = sigma2 * std::max(0.0, full(1, 1) - few(1, 1)) / (bow * bow);
-        const double rise_noise = sigma2 * std::max(0.0, full(0, 0) - few(0, 0));
-        shape.off2 = {fit_length_ * fit_length_ * std::max(0.0, shift * shift - shift_noise),
-                      std::max(0.0, rise * rise - rise_noise)};
+        const double counts = 1 / (1 + std::exp(0.5 * (kQuarticPrice - shape.more)));
+        const Eigen::Vector2d moved(fit_length_ * shift, rise);
+        const Eigen::Vector2d noisier(
+            fit_length_ * fit_length_ * sigma2 * std::max(0.0, full(1, 1) - few(1, 1)) / (bow * bow),
+            sigma2 * std::max(0.0, full(0, 0) - few(0, 0)));
+        shape.by = counts * moved;
+        shape.more_t_h = counts * noisier + counts * (1 - counts + kQuarticsOwn) * moved.cwiseAbs2();
         return shape;
     }
 
-    static double bow_of(const Parabola& fit) {
+    double bow_of(const Parabola& fit) const {
         const Eigen::Matrix3d inverse = fit.normal.ldlt().solve(Eigen::Matrix3d::Identity());
-        return std::abs(fit.coefficient[0]) /
-               std::sqrt(std::max(fit.sigma2 * inverse(0, 0), kApexLeastVariance));
+        const double variance = std::max(1.0, noise_.apart()) * fit.variance * inverse(0, 0);
+        return std::abs(fit.coefficient[0]) / std::sqrt(std::max(variance, kApexLeastVariance));
     }
 
     // Sets fit_length_ as well.
@@ -333,6 +347,7 @@ class Extremum final : public FeatureFinder {
     double given_;  // 0: none
     mutable double fit_length_ = kShortestFit_mm;
     mutable FeaturePoints points_;
+    mutable ProfileNoise noise_;
     mutable std::vector<double> scratch_;
     mutable std::vector<Vector5> rows_;
 };

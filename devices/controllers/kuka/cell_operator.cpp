@@ -37,10 +37,13 @@ LOOP
    WAIT FOR (SW_VERDICT<>1) OR ($TIMER[11]>=0)
    IF SW_VERDICT==1 THEN
       FOR N=1 TO SW_FRAMES
-         SW_ACTIVATE(N)
-         $VEL.CP=0.25
-         LIN_REL {Z 10.0} C_DIS
-         LIN_REL {Z -10.0}
+         ; a number that no region of the program has
+         IF NOT StrComp(SW_NAME[N,],"-",#CASE_SENS) THEN
+            SW_ACTIVATE(N)
+            $VEL.CP=0.25
+            LIN_REL {Z 10.0} C_DIS
+            LIN_REL {Z -10.0}
+         ENDIF
       ENDFOR
    ENDIF
 ENDLOOP

@@ -30,6 +30,8 @@ MODULE Seamwright
     PERS num swVerdict:=0;
     PERS bool swTeaching:=FALSE;
     PERS bool swMove:=FALSE;
+    ! Counts the moves that were asked for.
+    PERS num swMoveNo:=0;
     PERS pose swMoveTo:=[[0,0,0],[1,0,0,0]];
     LOCAL CONST speeddata travel:=[250,100,5000,1000];
     LOCAL CONST extjoint no_axes:=[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09];
@@ -165,19 +167,22 @@ MODULE Seamwright
     ! computer measures.
     PROC SW_Teach()
         VAR robtarget goal;
+        VAR num number;
         swMove:=FALSE;
         swTeaching:=TRUE;
         SW_Load;
         ConfL\Off;
         WHILE OpMode()<>OP_AUTO AND (NOT swAsk) AND (NOT swGo) DO
             IF swMove THEN
+                number:=swMoveNo;
                 goal:=CRobT(\Tool:=swTool\WObj:=wobj0);
                 goal.trans:=swMoveTo.trans;
                 goal.rot:=swMoveTo.rot;
                 goal.extax:=no_axes;
                 MoveL goal,v100,fine,swTool\WObj:=wobj0;
                 WaitTime 0.3;
-                swMove:=FALSE;
+                ! One that was asked for meanwhile, after this one was stopped, is driven next.
+                IF number=swMoveNo swMove:=FALSE;
             ENDIF
             WaitTime 0.01;
         ENDWHILE

@@ -21,6 +21,7 @@ MODULE SeamwrightServer
     PERS num swVerdict;
     PERS bool swTeaching;
     PERS bool swMove;
+    PERS num swMoveNo;
     PERS pose swMoveTo;
     PERS string swSignature;
     PERS num swCount;
@@ -239,7 +240,7 @@ MODULE SeamwrightServer
         CASE "MEASURE":
             Measure number,name,Field(line1,4);
         CASE "VERDICT":
-            Verdict number,name;
+            Verdict number,name,Field(line1,4);
         CASE "PERMIT":
             IF swGivenFor=0 THEN
                 Say head+" NONE","","";
@@ -316,7 +317,8 @@ MODULE SeamwrightServer
         RETURN FALSE;
     ENDFUNC
 
-    LOCAL PROC Verdict(string number,string word)
+    ! `count`: how many frames the computer has written for this part; a computer of before it tells none.
+    LOCAL PROC Verdict(string number,string word,string count)
         Take_back;
         IF swGivenFor<>0 AND swGivenFor=swPartNo THEN
             Say number+" NO VERDICT","the application has taken the permission already","";
@@ -326,6 +328,9 @@ MODULE SeamwrightServer
         CASE "CORRECTED":
             IF measured_part<>0 AND measured_part<>swPartNo THEN
                 Say number+" NO VERDICT","the robot has begun another part","";
+            ELSEIF count<>"" AND count<>NumToStr(staged_count,0) THEN
+                ! A connection that was lost, or a verdict, has taken some away: the work objects are as before.
+                Say number+" NO VERDICT","the frames that were written are gone: measure the part again","";
             ELSEIF NOT Applied_all() THEN
                 Say number+" NO VERDICT","a work object cannot be set: "+staged_name{applied+1},"";
                 Undo_applied;
@@ -401,6 +406,7 @@ MODULE SeamwrightServer
             Say number+" NO MOVE","the pose cannot be read","";
         ELSE
             swMoveTo:=goal;
+            swMoveNo:=(swMoveNo MOD 8000000)+1;
             swMove:=TRUE;
             WHILE swMove AND DOutput(sw_doMotorsOn)=1 AND DOutput(sw_doCycleOn)=1 DO
                 WaitTime 0.01;

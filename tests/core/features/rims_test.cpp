@@ -80,7 +80,7 @@ TEST(RimBetweenBentSides, IsNeverTakenForALargeCircleOfRimAndSides) {
     Dice dice(45);
     for (const auto& [radius, sweep] : {std::pair(2., 60.), {5., 45.}, {5., 60.}}) {
         int found = 0, far = 0;
-        for (int i = 0; i < 150; ++i) {
+        for (int i = 0; i < 50; ++i) {
             Scene s = scene_of({radius, .06, 1600}, Grid::exact, "circle");
             s.sensor.points = 800;
             const auto side = [&] { return (dice.chance(0.5) ? 1 : -1) * dice.uniform(200, 1000); };
@@ -99,7 +99,7 @@ TEST(RimBetweenBentSides, IsNeverTakenForALargeCircleOfRimAndSides) {
             far += (f.point_mm - s.truth).norm() > radius;
         }
         EXPECT_EQ(far, 0) << "of " << found << " rims of " << radius << " mm over " << sweep << " degrees";
-        EXPECT_GE(found, 45) << radius << " mm";
+        EXPECT_GE(found, 15) << radius << " mm";
     }
 }
 

@@ -117,7 +117,7 @@ TEST(AbbProgram, SharedDataHasOneType) {
         EXPECT_EQ((*i)[3], ";");
         EXPECT_EQ(motion[(*i)[2]], (*i)[1]) << (*i)[2];
     }
-    EXPECT_EQ(shared, 20);
+    EXPECT_EQ(shared, 21);
 }
 
 TEST(AbbProgram, BlocksAreClosedAndNamesFit) {

@@ -257,6 +257,35 @@ TEST_F(AbbController, AWaitingLinkKeepsThePermission) {
     EXPECT_EQ(link->permission(), Permission::given);
 }
 
+// The frames of a verdict are used up, and those of a lost connection gone: none lets the old ones be run.
+TEST_F(AbbController, AVerdictWithoutItsFramesIsRefused) {
+    start({{"application_wait_ms", 600000}});
+    for (const bool reconnects : {false, true}) {
+        SCOPED_TRACE(reconnects);
+        ASSERT_TRUE(start_measuring());
+        triggers_to_the_end();
+        ASSERT_TRUE(link->write_frame("BASE_left", corrected));
+        if (reconnects) {
+            controller->set_fault(ControllerFault::disconnect);
+            EXPECT_FALSE(link->permission());
+            controller->set_fault(ControllerFault::none);
+            for (int i = 0; i < 200 && !link->mode(); ++i) std::this_thread::sleep_for(milliseconds(10));
+        } else {
+            ASSERT_TRUE(link->confirm(PartVerdict::corrected, ""));
+            EXPECT_LT(distance_mm(*link->read_frame("BASE_left"), corrected), 1e-3);
+        }
+        const auto again = link->confirm(PartVerdict::corrected, "");
+        ASSERT_FALSE(again);
+        EXPECT_THAT(again.error().sentence(), HasSubstr("frames that were written are gone"));
+        EXPECT_EQ(link->permission(), Permission::none);
+        EXPECT_FALSE(controller->released());
+    }
+    ASSERT_TRUE(start_measuring());
+    triggers_to_the_end();
+    ASSERT_TRUE(link->write_frame("BASE_left", corrected));
+    EXPECT_TRUE(link->confirm(PartVerdict::corrected, "")) << "measured again";
+}
+
 TEST_F(AbbController, ALostLinkLeavesWhatIsTaken) {
     start();
     ASSERT_TRUE(start_measuring());
@@ -324,6 +353,28 @@ TEST_F(AbbController, TeachingMovesAreServedInManualModeOnly) {
     // Measuring by hand from there.
     ASSERT_TRUE(start_measuring());
     EXPECT_EQ(triggers_to_the_end(), 3);
+}
+
+// A robot that was stopped on its way ends that way when it is started again: no end of a later move.
+TEST_F(AbbController, TheEndOfAnotherMoveIsNotTheEndOfThisOne) {
+    start();
+    cell->set_mode(RobotMode::manual_reduced);
+    ASSERT_TRUE(eventually([&] { return controller->number("T_ROB1", "swTeaching") == 1; }));
+    const Pose begin = link->base_from_flange().value();
+    Pose first = begin, second = begin;
+    first.translation().z() += 250;
+    second.translation().z() += 240;
+    std::jthread stops([&] {
+        EXPECT_TRUE(eventually([&] { return distance_mm(*cell->reported_flange(), begin) > 30; }));
+        cell->set_mode(RobotMode::stopped);
+    });
+    EXPECT_THAT(link->move_to(first).error().sentence(), HasSubstr("stopped"));
+    stops.join();
+    cell->set_mode(RobotMode::manual_reduced);
+    std::this_thread::sleep_for(milliseconds(100));
+    const auto moved = link->move_to(second);
+    ASSERT_TRUE(moved) << moved.error().sentence();
+    EXPECT_LT(distance_mm(*link->base_from_flange(), second), 1e-3);
 }
 
 // A way that takes longer than the time-out of an answer, with the move's own allowance next to nothing.

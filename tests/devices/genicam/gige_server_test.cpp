@@ -91,6 +91,9 @@ class GigeWire : public testing::Test {
 
 TEST_F(GigeWire, RegistersAndMemoryAreReadAndWritten) {
     Peer peer(address);
+    const Octets write = {0x42, 1, 0, 0x82, 0, 8, 0, 7, 0, 0, 1, 0, 1, 2, 3, 4};
+    EXPECT_EQ(peer.ask(write), denied) << "without control";
+    EXPECT_EQ(peer.ask(take), taken);
     EXPECT_EQ(peer.ask({0x42, 1, 0, 0x82, 0, 16, 0, 1, 0, 0, 1, 0, 1, 2, 3, 4, 0, 0, 1, 4, 5, 6, 7, 8}),
               (Octets{0, 0, 0, 0x83, 0, 4, 0, 1, 0, 0, 0, 2}));
     EXPECT_EQ(peer.ask({0x42, 1, 0, 0x80, 0, 8, 0, 2, 0, 0, 1, 4, 0, 0, 1, 0}),

@@ -304,16 +304,19 @@ TEST_F(Wire, AFirstFrameThatIsLostIsToldOnATriggerLine) {
 void write_register(std::uint32_t address, std::uint32_t value) {
     auto socket = UdpSocket::bind("127.0.0.1", 0);
     ASSERT_TRUE(socket);
-    std::vector<std::byte> packet;
-    for (const int b : {0x42, 1, 0, 0x82, 0, 8, 0, 1}) packet.push_back(static_cast<std::byte>(b));
-    for (const std::uint32_t word : {address, value})
-        for (int shift = 24; shift >= 0; shift -= 8)
-            packet.push_back(static_cast<std::byte>(word >> shift & 0xFF));
-    ASSERT_TRUE(socket->send_to(packet, {camera_address, kGvcpPort}));
-    std::array<std::byte, 64> answer;
-    Endpoint from;
-    ASSERT_TRUE(socket->receive(answer, from, 3s));
-    ASSERT_EQ(answer[1], std::byte{0}) << "refused";
+    constexpr std::uint32_t kControl = 0xA00;
+    for (const auto& [at, word] : {std::pair{kControl, 2U}, {address, value}, {kControl, 0U}}) {
+        std::vector<std::byte> packet;
+        for (const int b : {0x42, 1, 0, 0x82, 0, 8, 0, 1}) packet.push_back(static_cast<std::byte>(b));
+        for (const std::uint32_t field : {at, word})
+            for (int shift = 24; shift >= 0; shift -= 8)
+                packet.push_back(static_cast<std::byte>(field >> shift & 0xFF));
+        ASSERT_TRUE(socket->send_to(packet, {camera_address, kGvcpPort}));
+        std::array<std::byte, 64> answer;
+        Endpoint from;
+        ASSERT_TRUE(socket->receive(answer, from, 3s));
+        ASSERT_EQ(answer[0], std::byte{0}) << "refused";
+    }
 }
 
 TEST_F(Wire, AMovedImageIsRefusedUnlessTheSettingsSayIt) {

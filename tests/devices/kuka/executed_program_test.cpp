@@ -5,6 +5,7 @@
 
 #include <thread>
 
+#include "devices/controllers/kuka/cell_operator.h"
 #include "devices/controllers/kuka/controller.h"
 #include "devices/exchange/files.h"
 #include "devices/kuka/eki.h"
@@ -177,6 +178,43 @@ TEST_P(ExecutedKrl, WhereNoProgramWaitsMeasuringIsRefusedAndSaysWhy) {
     ASSERT_FALSE(started);
     EXPECT_THAT(started.error().sentence(),
                 testing::AnyOf(HasSubstr("SEAMWRIGHT_SPOTS"), HasSubstr("another measuring program")));
+}
+
+// The program of a project whose first and third region are not measured: the paths of the others run in their own frames.
+TEST_P(ExecutedKrl, RegionsThatAreNotMeasuredShiftNoNumber) {
+    TemporaryFolder folder;
+    ProgramRequest request;
+    request.project = "door";
+    request.moves = two_spots();
+    request.frames = {{"left", "BASE_left", cell->read_frame("BASE_left").value(), 2}};
+    const std::uint16_t port = TcpListener::listen("127.0.0.1", 0)->port();
+    request.settings = {{"listen", "127.0.0.1"}, {"port", port}};
+    const auto files = write_kuka_program(request);
+    ASSERT_TRUE(files) << files.error().sentence();
+    for (const char* call : {"SW_ACTIVATE(SW_BASE_left)\n", "SW_ACTIVATE(1)\n", "SW_ACTIVATE(3)\n"}) {
+        SCOPED_TRACE(call);
+        for (const ProgramFile& f : *files) {
+            std::string text = f.text;
+            if (f.name == "seamwright_spots.src") text.insert(text.find("END\n\n"), call);
+            ASSERT_TRUE(write_text_file(folder.path() / f.name, text));
+        }
+        link.reset();
+        controller.reset();
+        start(5, 1000, port, folder.path().string());
+        measure();
+        ASSERT_FALSE(HasFatalFailure());
+        const auto confirmed = link->confirm(PartVerdict::corrected, "");
+        ASSERT_TRUE(confirmed) << confirmed.error().sentence();
+        const auto& robot = dynamic_cast<const krl::KukaCell&>(*controller);
+        const auto refuses = [&] {
+            return testing::Value(robot.messages(),
+                                  testing::Contains(HasSubstr("measures no region of this number")));
+        };
+        const bool own = call == std::string("SW_ACTIVATE(SW_BASE_left)\n");
+        for (int i = 0; i < 100 && !own && !refuses(); ++i) std::this_thread::sleep_for(milliseconds(10));
+        EXPECT_EQ(refuses(), !own);
+        EXPECT_EQ(own ? eventually(Permission::taken) : link->permission() == Permission::taken, own);
+    }
 }
 
 // Whatever tool and base the program moves with, the flange is the flange.

@@ -90,6 +90,49 @@ TEST(KukaProgram, HoldsTheProjectsPoses) {
     EXPECT_THAT(program, HasSubstr("$VEL.CP=0.1000\n"));
 }
 
+// A region whose spots are disabled leaves its number to nobody.
+TEST(KukaProgram, FramesKeepTheirNumbersAndHaveConstants) {
+    ProgramRequest r = request();
+    r.frames = {{"top", "BASE_top", Pose::Identity(), 2}, {"hinge", "BASE_hinge", Pose::Identity(), 4}};
+    const auto files = files_of(r);
+    const std::string &program = files.at("seamwright_spots.src"), &data = files.at("seamwright_spots.dat");
+    for (const char* line : {"SW_NAME[1,]=\"-\"\n", "SW_NAME[2,]=\"BASE_top\"\n", "SW_NAME[3,]=\"-\"\n",
+                             "SW_NAME[4,]=\"BASE_hinge\"\n", "SW_FRAMES=4\n",
+                             "; region hinge: SW_ACTIVATE(SW_BASE_hinge) before its path\n"})
+        EXPECT_THAT(program, HasSubstr(line));
+    EXPECT_THAT(data, HasSubstr("DECL GLOBAL CONST INT SW_BASE_top=2\n"));
+    EXPECT_THAT(data, HasSubstr("DECL GLOBAL CONST INT SW_BASE_hinge=4\n"));
+    r.frames[0].number = 33;
+    EXPECT_THAT(write_kuka_program(r).error().sentence(), HasSubstr("33 frames"));
+}
+
+TEST(KukaProgram, EveryConstantIsANameOfItsOwn) {
+    ProgramRequest r = request();
+    r.frames.clear();
+    const std::string longest(60, 'x');
+    for (const std::string& name :
+         {std::string("frame"), std::string("FRAMES"), std::string("travel"), longest, longest + "y",
+          std::string("a b"), std::string("a-b"), std::string("A_B"), std::string("setup")})
+        r.frames.push_back({"region", name, Pose::Identity()});
+    const auto files = files_of(r);
+    const std::string& data = files.at("seamwright_spots.dat");
+    std::string module;
+    for (const auto& [file, text] : files)
+        if (file != "seamwright_spots.dat") module += text;
+    const std::regex declared(R"(DECL GLOBAL CONST INT (\w+)=(\d+))");
+    std::set<std::string> names;
+    for (std::sregex_iterator it(data.begin(), data.end(), declared), end; it != end; ++it) {
+        std::string name = (*it)[1];
+        EXPECT_LE(name.size(), 24u);
+        EXPECT_FALSE(std::regex_search(std::regex_replace(module, std::regex(";[^\n]*"), ""),
+                                       std::regex("\\b" + name + "\\b", std::regex::icase)))
+            << name;
+        for (char& c : name) c = static_cast<char>(std::toupper(c));
+        EXPECT_TRUE(names.insert(name).second) << name;
+    }
+    EXPECT_EQ(names.size(), r.frames.size());
+}
+
 TEST(KukaProgram, EveryFileIsBalancedKrl) {
     for (auto& [name, text] : files_of(request())) {
         EXPECT_FALSE(std::regex_search(text, std::regex("@[A-Z_]+@")))
@@ -205,6 +248,20 @@ TEST(ProgramSignature, TellsProgramsApart) {
     EXPECT_TRUE(others.insert(program_signature(m)).second);
     m.pop_back();
     EXPECT_TRUE(others.insert(program_signature(m)).second);
+    m = moves;
+    m[0].stop_at_trigger = true;  // an old program would pass over the spot
+    EXPECT_TRUE(others.insert(program_signature(m)).second);
+    m = moves;
+    m[0].speed_mm_s += 0.1;
+    EXPECT_TRUE(others.insert(program_signature(m)).second);
+    m[0].speed_mm_s = moves[0].speed_mm_s + 1e-6;
+    EXPECT_EQ(program_signature(m), signature);
+    for (const NumberedFrame& frame :
+         {NumberedFrame{1, "BASE_left"}, {2, "BASE_left"}, {1, "BASE_right"}, {2, "BASE_right"}}) {
+        m = moves;
+        m[0].frames = {frame};
+        EXPECT_TRUE(others.insert(program_signature(m)).second) << frame.number << frame.name;
+    }
     m = moves;
     for (auto& move : m) move.trigger.translation().x() += 1e-7;  // rounding of a file is no other program
     EXPECT_EQ(program_signature(m), signature);

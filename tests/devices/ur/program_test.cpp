@@ -93,7 +93,8 @@ TEST(UrProgram, EverySpotIsPassedWhereTheProjectHasIt) {
     const auto [high, low] = ur::signature_numbers(program_signature(r.moves));
     EXPECT_THAT(text, HasSubstr("sw_signature_high = " + std::to_string(high) + "\n"));
     EXPECT_THAT(text, HasSubstr("sw_signature_low = " + std::to_string(low) + "\n"));
-    EXPECT_THAT(text, HasSubstr("# sw_activate(2): region top, frame BASE_top"));
+    EXPECT_THAT(
+        text, HasSubstr("# sw_activate(sw_BASE_top): region top, frame BASE_top\nglobal sw_BASE_top = 2\n"));
     EXPECT_EQ(text.find('@'), text.find("@ABC")) << "only the alphabet holds that sign";
 }
 

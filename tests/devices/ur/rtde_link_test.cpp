@@ -119,6 +119,34 @@ TEST(UrRtde, MovesWantTheTeachProgramAndTakeTheirTime) {
     EXPECT_LT(distance_mm(*link->base_from_flange(), far), 1e-6);
 }
 
+// A program that was paused goes on where it was: it must find nothing to do that has been told as failed.
+TEST(UrRtde, AMoveThatFailedIsNotDrivenWhenTheProgramGoesOn) {
+    auto robot = controller({});
+    const Pose start = program(1)[0].trigger;
+    cell()->move_to(start);
+    cell()->set_mode(RobotMode::manual_reduced);
+    auto link = link_to(robot->port());
+    Pose near = start, far = start;
+    near.translation().y() += 1;
+    far.translation().y() += 30;
+    Expected<void> moved = link->move_to(near);
+    for (int i = 0; i < 50 && !moved; ++i) {  // until the other program runs
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        moved = link->move_to(near);
+    }
+    ASSERT_TRUE(moved) << moved.error().sentence();
+    cell()->set_mode(RobotMode::stopped);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_THAT(link->move_to(far).error().sentence(), HasSubstr("stopped or paused"));
+    cell()->set_mode(RobotMode::manual_reduced);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+    auto at = link->base_from_flange();
+    ASSERT_TRUE(at) << at.error().sentence();
+    EXPECT_LT(distance_mm(*at, near), 1e-6);
+    moved = link->move_to(far);
+    EXPECT_TRUE(moved) << moved.error().sentence();
+}
+
 TEST(UrRtde, AStoppedProgramIsToldAtOnce) {
     for (const char* how : {"fault", "stop", "restart"}) {
         SCOPED_TRACE(how);

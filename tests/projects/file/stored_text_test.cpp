@@ -46,7 +46,7 @@ TEST(StoredText, ComesBack) {
 TEST(StoredText, NoSentenceIsTooLongOrTooDeepToComeBack) {
     Text chain, deep("cancelled");
     std::vector<Text> list;
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 1200; ++i) {
         list.push_back(Text("spot {}", fmt::format("S{}", i)));
         chain = joined(chain, "; ", Text("region {}: {}", fmt::format("R{}", i), Text("cancelled")));
     }

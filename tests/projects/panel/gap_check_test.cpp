@@ -250,11 +250,8 @@ TEST_F(GapCheckTest, DarkPatchBesideANarrowGapIsNotTakenForTheGap) {
     ASSERT_TRUE(r) << r.error().sentence();
     for (const GapPoint& p : r->scan.points) {
         EXPECT_NE(p.verdict, GapVerdict::passes) << p.path_mm;
-        EXPECT_LT(p.verdict == GapVerdict::not_measured ? 0 : p.width_mm, 3) << p.path_mm;
+        if (p.verdict != GapVerdict::not_measured) EXPECT_NEAR(p.width_mm, 2.4, 0.3) << p.path_mm;
     }
-    EXPECT_EQ(std::count_if(r->scan.points.begin(), r->scan.points.end(),
-                            [](const GapPoint& p) { return p.verdict == GapVerdict::not_measured; }),
-              17);
 }
 
 TEST_F(GapCheckTest, HostileInputIsRefused) {

@@ -8,6 +8,7 @@
 #include <deque>
 #include <random>
 
+#include "devices/robot_program.h"
 #include "devices/silence.h"
 #include "projects/measure/measure.h"
 #include "tests/projects/mock_devices.h"
@@ -165,6 +166,46 @@ TEST_F(WiredPass, AnExtraPulseShowsInTheTimes) {
     EXPECT_GE(seen, 198);
 }
 
+// As many frames as triggers: one pulse was missed, another came twice. Spots 0.3 s apart, three to twelve of them.
+TEST_F(WiredPass, AMissedAndADoubledPulseShowInTheTimes) {
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> word(0, 40), way(20, 50), travel(250, 400), stall(0, 1);
+    const auto ns = [](double ms) { return static_cast<std::int64_t>(1e6 * ms); };
+    int seen = 0, honest_failed = 0;
+    for (int run = 0; run < 600; ++run) {
+        const int n = 3 + run % 10, missed = run % n, doubled = (missed + 1 + run / 10 % (n - 1)) % n;
+        const bool honest = run >= 300, stalls = honest && run % 2 == 0;
+        std::vector<double> triggers, exposed;
+        double t = 0;
+        for (int k = 0; k < n; ++k, t += travel(random)) triggers.push_back(t);
+        for (int k = 0; k < n; ++k) {
+            if (!honest && k == missed) continue;
+            exposed.push_back(triggers[static_cast<std::size_t>(k)]);
+            if (!honest && k == doubled) exposed.push_back(exposed.back() + 20);
+        }
+        const double stalls_from = stall(random) * t, held_up = 300;
+        TriggeredFrames fresh(sensor, setup);
+        frames.clear();
+        const std::int64_t begin = now_ns() - ns(t + 1000);
+        bool failed = false;
+        for (std::size_t k = 0; k < triggers.size(); ++k) {
+            auto frame = std::make_shared<Frame>();
+            frame->sequence = k;
+            frame->host_time_ns = begin + ns(exposed[k] + way(random));
+            frame->device_time_ns = ns(5e6 + exposed[k]);
+            frames.push_back(frame);
+            double heard = triggers[k] + word(random);
+            if (stalls && triggers[k] > stalls_from && heard < stalls_from + held_up)
+                heard = stalls_from + held_up;
+            failed = failed || !fresh.at({"S", begin + ns(heard), std::nullopt}, kSoon, {}, nullptr);
+        }
+        failed = failed || !fresh.finish();
+        (honest ? honest_failed : seen) += failed;
+    }
+    EXPECT_GE(seen, 285) << "of 300";
+    EXPECT_LE(honest_failed, 3) << "of 300, half of them with a robot's words held up";
+}
+
 TEST_F(WiredPass, HonestTimesFailNoRun) {
     std::mt19937 random(8);
     int failed = 0;
@@ -214,6 +255,77 @@ TEST_F(WiredSensor, ASensorThatCountsBackwardsFailsTheRun) {
     const auto frame = at("S2");
     ASSERT_FALSE(frame);
     EXPECT_THAT(frame.error().sentence(), HasSubstr("frame 1 came where frame 6 was due"));
+}
+
+// A robot whose answer is not that of its own move stands elsewhere.
+TEST(StandAt, BelievesNoAnswerThatTheFlangeContradicts) {
+    struct Mover : NiceMock<MockRobot> {
+        Expected<void> move_to(const Pose&) override { return moved; }
+        Expected<void> moved;
+    };
+    const Pose sent = make_pose(rotation_exp({0.3, 0.1, 2}), {800, 100, 600});
+    const auto off = [&](double mm, double deg) {
+        Pose p = sent;
+        p.translation().z() += mm;
+        p.rotate(Eigen::AngleAxisd(rad_from_deg(deg), Eigen::Vector3d::UnitX()));
+        return p;
+    };
+    const auto stands = [&](const std::vector<Pose>& reads, Expected<void> moved = {}) {
+        Mover robot;
+        robot.moved = std::move(moved);
+        std::size_t n = 0;
+        ON_CALL(robot, base_from_flange).WillByDefault([&]() -> Expected<Pose> {
+            return reads[std::min(n++, reads.size() - 1)];
+        });
+        return stand_at(robot, "S1", sent);
+    };
+    EXPECT_TRUE(stands({off(0, 0)}));
+    EXPECT_TRUE(stands({off(0.4, 0.08)}));
+    EXPECT_TRUE(stands({off(3, 0), off(0.01, 0)})) << "it was settling";
+    for (const Pose& elsewhere : {off(0.6, 0), off(0, 0.2), off(200, 0)}) {
+        const auto at = stands({elsewhere});
+        ASSERT_FALSE(at);
+        EXPECT_THAT(at.error().sentence(), HasSubstr("off the pose that it was sent to"));
+        EXPECT_THAT(at.error().sentence(), HasSubstr("spot S1"));
+    }
+    const auto by_hand = stands({off(5, 0)}, device_error("this robot cannot be moved from the program"));
+    ASSERT_FALSE(by_hand);
+    EXPECT_THAT(by_hand.error().sentence(), HasSubstr("5.00 mm"));
+    EXPECT_THAT(by_hand.error().sentence(), HasSubstr("cannot be moved from the program"));
+    EXPECT_THAT(by_hand.error().sentence(), HasSubstr("jog it there"));
+}
+
+TEST(MeasuringProgram, DisabledSpotsShiftNoNumberOfARegion) {
+    Project p;
+    for (const char* id : {"S1", "S2", "S3", "S4"}) {
+        Spot spot;
+        spot.id = id;
+        spot.robot_id = id == std::string("S2") ? "R2" : "R1";
+        p.spots.push_back(spot);
+        Region region;
+        region.id = std::string("of ") + id;
+        region.frame_name = std::string("BASE_") + id;
+        region.spot_ids = {id};
+        p.regions.push_back(region);
+    }
+    const auto frames = [&] {
+        std::vector<NumberedFrame> all;
+        for (const MeasuringMove& move : measuring_program(p, "R1"))
+            all.insert(all.end(), move.frames.begin(), move.frames.end());
+        return all;
+    };
+    EXPECT_EQ(frames(), (std::vector<NumberedFrame>{{1, "BASE_S1"}, {2, "BASE_S3"}, {3, "BASE_S4"}}));
+    EXPECT_EQ(region_number(p, "of S2", "R2"), 1);
+    EXPECT_EQ(region_number(p, "of S2", "R1"), 0);
+    p.spots[0].enabled = false;
+    EXPECT_EQ(frames(), (std::vector<NumberedFrame>{{2, "BASE_S3"}, {3, "BASE_S4"}}));
+    const std::string signature = program_signature(measuring_program(p, "R1"));
+    std::swap(p.regions[2], p.regions[3]);
+    EXPECT_NE(program_signature(measuring_program(p, "R1")), signature) << "other numbers";
+    std::swap(p.regions[2], p.regions[3]);
+    EXPECT_EQ(program_signature(measuring_program(p, "R1")), signature);
+    p.regions.erase(p.regions.begin());
+    EXPECT_NE(program_signature(measuring_program(p, "R1")), signature) << "removed";
 }
 
 TEST(Waiting, IsCancelledWithinASlice) {

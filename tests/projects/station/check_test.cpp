@@ -160,5 +160,28 @@ TEST(Check, NoSoftwareTriggerInMotion) {
     EXPECT_EQ(refused(), 0u);
 }
 
+// A robot of Universal Robots begins each pass standing: at 1.2 m/s2 it is as fast as v after v^2 / (2 a).
+TEST(Check, TellsASpeedThatTheEntryIsTooShortFor) {
+    Project project = make_fake_cell()->project;
+    for (RobotSetup& r : project.robots) r.driver = "ur-rtde";
+    const auto told = [&](double speed_mm_s, double entry_mm, bool stops) {
+        project.spots[0].speed_mm_s = speed_mm_s;
+        project.spots[0].entry_mm = entry_mm;
+        project.spots[0].stop_at_trigger = stops;
+        for (const Error& e : check(project))
+            if (e.sentence().find("does not reach the speed") != std::string::npos) return true;
+        return false;
+    };
+    EXPECT_FALSE(told(100, 4.2, false));
+    EXPECT_TRUE(told(100, 4.1, false));
+    EXPECT_TRUE(told(400, 20, false));
+    EXPECT_FALSE(told(200, 20, false));
+    EXPECT_TRUE(told(10, 0, false));
+    EXPECT_FALSE(told(400, 0, true));
+    project.spots[0].stop_at_trigger = false;
+    for (RobotSetup& r : project.robots) r.driver = "kuka-eki";
+    EXPECT_FALSE(told(100, 0, false)) << "it comes to the entry at travelling speed";
+}
+
 }  // namespace
 }  // namespace seamwright

@@ -228,6 +228,25 @@ TEST_F(Watching, ARobotThatWentIsNotAskedToCallAgain) {
     EXPECT_THAT(cell->verdicts, ElementsAre(PartVerdict::failed));
 }
 
+TEST_F(Watching, AVerdictThatDidNotArriveIsToldWhenTheRobotAnswers) {
+    cell->silent_sensor_at = "S3";
+    cell->deaf_to = PartVerdict::failed;
+    options.call_again_first = std::chrono::milliseconds(20);
+    std::stop_source stop;
+    options.cancel = stop.get_token();
+    int waits = 0;
+    options.alive = [&] {
+        if (cell->verdicts.size() == 3) cell->deaf_to.reset();
+        if (cell->verdicts.size() > 3 && ++waits == 20) stop.request_stop();
+    };
+    part("CAR-1");
+    ASSERT_TRUE(watch(*station, options));
+    EXPECT_THAT(cell->verdicts, ElementsAre(PartVerdict::failed, PartVerdict::failed, PartVerdict::failed,
+                                            PartVerdict::failed))
+        << "until one arrives, and none after it";
+    EXPECT_THAT(texts, HasSubstr("robot R1: told now how its part ended (failed)"));
+}
+
 TEST_F(Watching, ARobotThatGoesWhileASensorIsDeadIsToldTooAndAllAreBackAtOnce) {
     cell->dead_sensor = true;
     part("CAR-1");

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <set>
 
 #include "app/cli/answers/result_json.h"
@@ -18,6 +19,7 @@
 #include "app/cli/recording.h"
 #include "app/cli/sign_in.h"
 #include "app/cli/signal_watch.h"
+#include "devices/exchange/files.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
 #include "projects/line/line_control.h"
@@ -110,6 +112,14 @@ json event_json(const WatchEvent& e) {
 // One JSON object a line, 10 MiB a file, five files kept.
 Expected<std::shared_ptr<spdlog::logger>> open_log(const std::string& file) {
     if (file.empty()) return std::shared_ptr<spdlog::logger>();
+    SEAM_OK(check_replaceable(file));
+    // It is written on, and rotated away: that must not happen to another kind of file.
+    if (std::ifstream before(file, std::ios::binary); before) {
+        const int first = before.peek();
+        if (first != std::ifstream::traits_type::eof() && first != '{')
+            return input_error("is no log: its first line is no JSON object", file,
+                               "give the name of another file");
+    }
     try {
         auto sink = std::make_shared<spdlog::sinks::rotating_file_sink_st>(file, 10u << 20, 5);
         sink->set_pattern("%v");

@@ -84,6 +84,8 @@ class Parser {
         r.accept("DECL");
         const bool global = r.accept("GLOBAL");
         if (global && !in_data_list) throw KrlError("GLOBAL variables stand in data lists");
+        const bool constant = r.accept("CONST");
+        if (constant && !in_data_list) throw KrlError("CONST stands in data lists");
         const Token type_name = r.take();
         const auto type = type_from(type_name.text);
         if (!type) throw KrlError(fmt::format("{} is no type", type_name.text));
@@ -111,6 +113,8 @@ class Parser {
             if (r.accept("=")) {
                 if (!in_data_list) throw KrlError("only data lists give values with a declaration");
                 d.initial = expression(r);
+            } else if (constant) {
+                throw KrlError(fmt::format("the constant {} has no value", d.name));
             }
             all.push_back(std::move(d));
         } while (r.accept(","));

@@ -1,5 +1,6 @@
 // The files that are delivered, executed.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -49,7 +50,7 @@ struct DeliveredRun {
     }
     void cycles(int count) {
         for (int i = 0; i < count && interpreter->running(); ++i, ++cycle) {
-            robot->inputs.ints[24 + ur::kBeat] = beats ? cycle / 50 : robot->inputs.ints[24 + ur::kBeat];
+            robot->inputs.ints[24 + ur::kBeat] = beats ? cycle / 10 : robot->inputs.ints[24 + ur::kBeat];
             robot->begin_cycle();
             interpreter->cycle();
             robot->end_cycle();
@@ -140,6 +141,33 @@ TEST(UrDelivered, AnotherConnectionDoesNotInheritThePermission) {
     EXPECT_EQ(run.state().permitted, ur::Permitted::no);
 }
 
+// What stands in the registers when a paused program goes on, or when its sender has died, is not done.
+TEST(UrDelivered, ARequestWhoseSenderIsGoneIsNotDone) {
+    const ProgramRequest r = delivered_request();
+    for (const bool another_connects : {false, true}) {
+        SCOPED_TRACE(another_connects);
+        const Pose start = r.moves[0].entry;
+        DeliveredRun run(r, "sw_teach()\n", start);
+        run.cycles(50);
+        Pose far = start;
+        far.translation().z() += 50;
+        const auto pose = ur::ur_pose(far);
+        for (std::size_t i = 0; i < 6; ++i) run.robot->inputs.reals[24 + i] = pose[i];
+        run.beats = false;
+        EXPECT_EQ(run.ask(ur::Command::move), -100);
+        if (another_connects) {
+            run.robot->inputs.ints[24 + ur::kSession] = 4711;
+            run.beats = true;
+        }
+        run.cycles(1000);
+        EXPECT_LT(distance_mm(run.robot->base_from_flange(), start), 1e-6);
+        run.beats = true;
+        EXPECT_EQ(run.ask(ur::Command::move), 0) << "who is there is obeyed";
+        EXPECT_LT(distance_mm(run.robot->base_from_flange(), far), 1e-6);
+        EXPECT_FALSE(run.interpreter->error()) << run.interpreter->error()->sentence();
+    }
+}
+
 // Whatever moment they come at, the program's taking and the client's loss or its taking back end in one of
 // two: taken and running, or standing.
 TEST(UrDelivered, TakingAndTakingBackDoNotRace) {
@@ -200,6 +228,31 @@ TEST(UrDelivered, WithoutPermissionTheProgramHalts) {
     EXPECT_FALSE(run.interpreter->running());
     EXPECT_FALSE(run.interpreter->error());
     EXPECT_FALSE(run.interpreter->global("ran"));
+}
+
+// The first region's spots are disabled: nobody's path runs in another's frame.
+TEST(UrDelivered, RegionsThatAreNotMeasuredShiftNoNumber) {
+    ProgramRequest r = delivered_request();
+    r.frames[0].number = 2;
+    for (const char* number : {"sw_BASE_left", "2", "1", "3", "0"}) {
+        SCOPED_TRACE(number);
+        const bool own = number == std::string("sw_BASE_left") || number == std::string("2");
+        DeliveredRun run(r,
+                         fmt::format("while sw_permission == 0:\n  sync()\nend\nf = sw_activate({})\nx = "
+                                     "f[0]\nwhile True:\n  sync()\nend\n",
+                                     number),
+                         r.moves[0].entry);
+        run.cycles(50);
+        ASSERT_EQ(run.ask(ur::Command::verdict, 1), 0);
+        run.cycles(50);
+        EXPECT_EQ(run.robot->popup.has_value(), !own);
+        const Value* x = run.interpreter->global("x");
+        ASSERT_EQ(x != nullptr, own);
+        if (own) {
+            EXPECT_EQ(*x, Value{0.9});
+        }
+        EXPECT_FALSE(run.interpreter->error()) << run.interpreter->error()->sentence();
+    }
 }
 
 TEST(UrDelivered, TheWayLeadsOverThePointsBetween) {

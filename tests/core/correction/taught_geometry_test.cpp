@@ -1,0 +1,144 @@
+// What the taught geometry does not show is refused, whatever the displacement lends; what it shows is not.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/correction/correction.h"
+#include "core/geometry/decompositions.h"
+#include "tests/core/correction/doors.h"
+#include "tests/core/english.h"
+
+namespace seamwright {
+namespace {
+
+using namespace testing_doors;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+const Eigen::Vector3d kCentre(450, 600, 0);
+
+Pose about_centre(const Eigen::Vector3d& mm, const Eigen::Vector3d& turn_deg) {
+    const Eigen::Matrix3d r = rotation_exp(rad_from_deg(1) * turn_deg);
+    return make_pose(r, mm + kCentre - r * kCentre);
+}
+
+double turn_about_z_deg(const Pose& d) {
+    return deg_from_rad(rotation_log(d.linear()).z());
+}
+
+// X radial, Y turned by `off_rad` from the tangent, Z the normal.
+SpotObservation at_rim(const std::string& id, double angle, double radius_mm, double off_rad,
+                       double sigma_mm) {
+    SpotObservation s;
+    s.id = id;
+    s.sigma_mm = sigma_mm;
+    Eigen::Matrix3d axes;
+    axes.col(1) = Eigen::Vector3d(-std::sin(angle + off_rad), std::cos(angle + off_rad), 0);
+    axes.col(2) = Eigen::Vector3d::UnitZ();
+    axes.col(0) = axes.col(1).cross(axes.col(2));
+    s.workobject_from_sensor =
+        make_pose(axes, kCentre + radius_mm * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0));
+    return s;
+}
+
+void add_noise_of_own(std::vector<SpotObservation>& spots, Rng& rng) {
+    for (SpotObservation& s : spots) s.measured_mm += s.sigma_mm * gaussian(rng).cwiseProduct(s.weights);
+}
+
+// Where the displaced circle pierces the laser plane, by Newton's method from the spot's own angle.
+Eigen::Vector3d on_circle(const Pose& sensor_from_part, double radius_mm, double angle) {
+    Eigen::Vector3d p;
+    for (int k = 0; k < 20; ++k) {
+        const Eigen::Vector3d out(std::cos(angle), std::sin(angle), 0), along(-out.y(), out.x(), 0);
+        p = sensor_from_part * Eigen::Vector3d(kCentre + radius_mm * out);
+        angle -= p.y() / (radius_mm * (sensor_from_part.linear() * along).y());
+    }
+    return p;
+}
+
+// A rim that has grown by a tenth of a millimetre looks like one that has turned.
+TEST(TaughtGeometry, ARoundRimDoesNotTellItsTurnHoweverManySpotsItHas) {
+    Rng rng(31);
+    for (const auto& [radius, grown, spots, noise] : {std::tuple{300.0, 0.1, 8, 0.02},
+                                                      {300.0, 0.1, 6, 0.02},
+                                                      {300.0, 0.0, 8, 0.02},
+                                                      {100.0, 0.1, 12, 0.005},
+                                                      {30.0, 0.03, 8, 0.005},
+                                                      {300.0, -0.1, 8, 0.02}}) {
+        for (int trial = 0; trial < 20; ++trial) {
+            const Pose d = about_centre(gaussian(rng), 0.2 * gaussian(rng));
+            std::vector<SpotObservation> rim;
+            for (int n = 0; n < spots; ++n) {
+                const double angle = 2 * kPi * n / spots + 0.1;
+                rim.push_back(at_rim(fmt::format("S{}", n + 1), angle, radius, 0, noise));
+                rim.back().measured_mm =
+                    on_circle(rim.back().workobject_from_sensor.inverse() * d, radius + grown, angle);
+            }
+            add_noise_of_own(rim, rng);
+            const RegionCorrection r = *solve_region(rim, {});
+            ASSERT_EQ(r.status, CorrectionStatus::under_determined)
+                << radius << " " << spots << ": A off by "
+                << turn_about_z_deg(r.displacement.workobject_from_movedworkobject) - turn_about_z_deg(d);
+            EXPECT_THAT(r.unobservable, Contains(HasSubstr("rotation about Z")));
+        }
+    }
+}
+
+// A spot in the middle of each side: turned to the left it measures as turned to the right.
+TEST(TaughtGeometry, MiddlesOfAHexagonsSidesDoNotTellTheTurn) {
+    Rng rng(32);
+    for (int trial = 0; trial < 40; ++trial) {
+        std::vector<SpotObservation> sides;
+        for (int n = 0; n < 6; ++n)
+            sides.push_back(at_rim(fmt::format("S{}", n + 1), kPi * n / 3, 300, 0, 0.02));
+        measure(sides, about_centre(2 * gaussian(rng), Eigen::Vector3d(0, 0, 1) + 0.5 * gaussian(rng)));
+        add_noise_of_own(sides, rng);
+        EXPECT_EQ(solve_region(sides, {})->status, CorrectionStatus::under_determined);
+    }
+}
+
+TEST(TaughtGeometry, LargeTurnsOfWellObservedDoorsAreSolved) {
+    Rng rng(36);
+    for (const auto& [mm, deg] : {std::pair{15.0, 3.0}, {5.0, 25.0}}) {
+        double nees = 0;
+        int solved = 0;
+        for (int trial = 0; trial < 400; ++trial) {
+            std::vector<SpotObservation> spots = door(rng, 7 + trial % 6);
+            const Pose d =
+                make_pose(rotation_exp(rad_from_deg(deg) * gaussian(rng).normalized()), mm * gaussian(rng));
+            measure(spots, d);
+            add_noise_of_own(spots, rng);
+            const RegionCorrection r = *solve_region(spots, {});
+            if (r.status != CorrectionStatus::ok) continue;
+            ++solved;
+            const Vector6 e = difference(d, r.displacement.workobject_from_movedworkobject);
+            const Vector6 scale = r.covariance.diagonal().cwiseSqrt(), u = e.cwiseQuotient(scale);
+            const Matrix6 correlation =
+                scale.cwiseInverse().asDiagonal() * r.covariance * scale.cwiseInverse().asDiagonal();
+            nees += u.dot(Vector6(solve_symmetric(correlation, u)));
+        }
+        EXPECT_GE(solved, 396) << deg;
+        EXPECT_GT(nees / solved, 6 * 0.85) << deg;
+        EXPECT_LT(nees / solved, 6 * 1.15) << deg;
+    }
+}
+
+// The one spot that shows a rim's turn contradicts: without it the turn is not known, and it is not left out.
+TEST(TaughtGeometry, WhatIsLeftWithoutAWrongSpotIsJudgedAsTaughtToo) {
+    Rng rng(37);
+    for (int trial = 0; trial < 40; ++trial) {
+        std::vector<SpotObservation> rim;
+        for (int n = 0; n < 8; ++n)
+            rim.push_back(at_rim(fmt::format("S{}", n + 1), kPi * n / 4, 300, 0, 0.02));
+        rim.push_back(at_rim("across", 0.4, 250, kPi / 2, 0.02));
+        measure(rim, about_centre(gaussian(rng), Eigen::Vector3d(0, 0, 1.5)));
+        add_noise_of_own(rim, rng);
+        rim.back().measured_mm.x() += 4;
+        const RegionCorrection r = *solve_region(rim, {});
+        EXPECT_TRUE(r.status != CorrectionStatus::ok || !r.consistent || r.spots.back().used) << r.message;
+    }
+}
+
+}  // namespace
+}  // namespace seamwright

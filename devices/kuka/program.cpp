@@ -140,7 +140,7 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
         SEAM_OK(krl_text(frame.name, "frame of region " + frame.region_id));
         if (frame.name == kNoFrame)
             return input_error(Text("\"{}\" cannot be written in KRL", frame.name),
-                               "frame of region " + frame.region_id, "choose another name");
+                               Text("region {}", frame.region_id), "choose another name");
         const std::string& constant = constants[static_cast<std::size_t>(frames[i] - request.frames.data())];
         data += fmt::format("DECL GLOBAL CONST INT {}={}\n", constant, k);
         setup += fmt::format(

@@ -87,23 +87,13 @@ void GapFlushGauge::measure_edge(const GapPart& part, const Eigen::Vector2d& u, 
         if (std::abs(advance - plain) < by_noise) advance = plain;
     }
     const double spread = std::max(advance, kSeenEdge * plain);
-    // The edge stands in the middle of a ramp that smoothing has drawn.
-    const double ramp = part.ramp ? (part.smoothed_lines - 1) * plain : 0;
-    // It has drawn a flank that is seen out over as many lines.
-    if (part.smoothed_lines > 1)
-        for (const std::size_t i : {outermost, outermost + 1})
-            if (i > 0 && i < part.z.size())
-                flank = std::max(flank,
-                                 0.5 * part.smoothed_lines * std::abs((part.z[i] - part.z[i - 1]) * u.y()));
-    side.edge = Eigen::Vector2d(part.x[outermost], part.z[outermost]) + (0.5 * (advance + ramp) + unseen) * u;
-    side.edge_variance = (spread * spread + ramp * ramp) / 12 + std::pow(0.5 * part.unsure_lines * plain, 2) +
-                         flank * flank + noise * noise;
+    side.edge = Eigen::Vector2d(part.x[outermost], part.z[outermost]) + (0.5 * advance + unseen) * u;
+    side.edge_variance = spread * spread / 12 + flank * flank + noise * noise;
 }
 
 GapFlush GapFlushGauge::measure(const Profile& profile) {
     GapFlush result;
-    switch (sides_.find(profile, settings_.window, std::max(settings_.minimum_points, 4),
-                        settings_.edge_skip_mm + settings_.surface_mm)) {
+    switch (sides_.find(profile, settings_.window, std::max(settings_.minimum_points, 4))) {
         case GapSides::Found::no_points:
             result.status = GapFlushStatus::no_points;
             result.message = "no surface in the window";
@@ -111,12 +101,6 @@ GapFlush GapFlushGauge::measure(const Profile& profile) {
         case GapSides::Found::one_surface:
         case GapSides::Found::unbroken:
             result.message = "only one surface in the window: the contour is not broken by a gap";
-            return result;
-        case GapSides::Found::ambiguous:
-            result.status = GapFlushStatus::ill_conditioned;
-            result.message =
-                "which surface is a panel and which the ground in the gap cannot be told: show more of both "
-                "panels, or narrow the window to them";
             return result;
         case GapSides::Found::both:
             break;

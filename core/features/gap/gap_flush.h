@@ -19,9 +19,7 @@
 //
 // Noise model: across each surface, from each line's residuals, their likeness and the profile's noise
 // (contour_noise.h); an edge is spread evenly over that advance a along u, at least over a third of the pitch (variance
-// a^2 / 12 each; a sensor's noise is in z and moves it by its part along u as well), and known to a point's noise across. Behind the edge a sensor that means m lines has
-// drawn the step over m - 1 of them: the edge is their middle, with (m - 1)^2 / 12 pitches^2 more; a flank that is seen counts
-// m times. Where nothing is known of its smoothing, and ground is seen: half of the steep lines beside the edge.
+// a^2 / 12 each; a sensor's noise is in z and moves it by its part along u as well), and known to a point's noise across.
 // Covariance of (gap, flush) in mm^2.
 
 #include <Eigen/Core>
@@ -40,7 +38,7 @@ enum class GapFlushStatus {
     ok,
     no_points,       // fewer usable points than two surfaces need
     not_found,       // no two sides: the contour is not broken
-    ill_conditioned  // a surface line is too short or not straight, or may be the gap's ground
+    ill_conditioned  // a surface line is too short or not straight
 };
 std::string_view to_string(GapFlushStatus status);
 

@@ -52,8 +52,8 @@ struct RunOptions {
     std::function<bool()> part_over = {};    // see HoldOptions
     // A robot that did not acknowledge how the part ended (refused or failed): it may wait for that still.
     std::function<void(const std::string& robot_id, PartVerdict verdict)> untold = {};
-    std::function<void(const std::string& robot_id)> robot_goes =
-        {};                                            // its program took the start of measuring
+    // Its program took the start of measuring.
+    std::function<void(const std::string& robot_id)> robot_goes = {};
     std::function<void(const RunProgress&)> progress;  // called on the running thread
     // A person's word before a push run writes: called on the running thread when every region has passed the
     // gate, with the judged run, which is in the file already, and in each RegionRecord::push.before the

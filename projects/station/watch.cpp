@@ -204,6 +204,7 @@ class Watch {
                              : robot->wait_start(slice);
             for (const Text& notice : robot->take_notices())
                 tell(WatchLevel::warning, watched::RobotNotice{}, Text("robot {}: {}", setup.id, notice));
+            if (start) untold_.erase(setup.id);  // it is at another part
             if (line && (start || start.error().kind == ErrorKind::usage)) {
                 if (!start) std::this_thread::sleep_for(slice);  // it has no call that could be waited for
                 continue;
@@ -212,7 +213,6 @@ class Watch {
                 ready();
                 caller_ = setup.id;
                 if (stranded_ && stranded_->first == caller_) stranded_.reset();
-                untold_.erase(caller_);
                 newest(*robot, setup.id, *start);
                 if (expired(*robot, setup.id, *start)) return std::nullopt;
                 return std::optional(*start);
@@ -302,6 +302,7 @@ class Watch {
         }
     }
 
+    // The one that was left in front of a failed part, when its time has come and all sensors answer.
     void let_call_again() {
         if (!stranded_ || dead_ || std::chrono::steady_clock::now() < stranded_->second) return;
         const std::string id = std::exchange(stranded_, std::nullopt)->first;
@@ -370,7 +371,10 @@ class Watch {
         run.part_over = [&] { return part_called(); };
         run.untold = [&](const std::string& id, PartVerdict verdict) { untold_[id] = {verdict, {}}; };
         bool went = false;
-        run.robot_goes = [&](const std::string& id) { went = went || id == caller_; };
+        run.robot_goes = [&](const std::string& id) {
+            went = went || id == caller_;
+            untold_.erase(id);
+        };
         run.progress = [&](const RunProgress& p) {
             alive();
             tell(WatchLevel::info, watched::SpotDone{p.done, p.total}, p.text);
@@ -403,6 +407,7 @@ class Watch {
         return forget_old_runs();
     }
 
+    // Whether the robot that called stands in front of its part still, which has failed.
     void strand(bool stands) {
         if (!stands) {
             call_again_ = options_.call_again_first;

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "projects/file/project_file.h"
@@ -66,6 +67,24 @@ TEST_F(RunCommand, SaysWhatBecameOfTheRelease) {
     EXPECT_EQ(answer["release"]["R1"], "taken");
     EXPECT_EQ(answer["regions"][0]["push"]["release"], "taken");
     EXPECT_EQ(run({"run", file.string(), "--hold", "5"}).exit_code, 2) << "only with --push";
+}
+
+// A log is written on and rotated away, so nothing but a log may be one.
+TEST_F(RunCommand, ALogIsNoOtherKindOfFile) {
+    const fs::path notes = folder / "notes.txt", before = folder / "before.seam";
+    std::ofstream(notes) << "written by hand\n";
+    fs::copy_file(file, before);
+    const auto bytes = [](const fs::path& of) {
+        std::ifstream in(of, std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(in), {});
+    };
+    for (const fs::path& log : {before, notes}) {
+        const std::string was = bytes(log);
+        const ProgramResult r = run({"run", file.string(), "--watch", "--parts", "1", "--log", log.string()});
+        EXPECT_EQ(r.exit_code, 2) << r.err;
+        EXPECT_THAT(r.err, HasSubstr("give the name of another file"));
+        EXPECT_EQ(bytes(log), was) << log;
+    }
 }
 
 TEST_F(RunCommand, WhatConcernsMotionStopsItBeforeADeviceIsTouched) {

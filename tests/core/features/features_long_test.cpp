@@ -138,7 +138,8 @@ TEST(MatchStatistics, RepeatabilityOfOneTemplate) {
 }
 
 using Generate = std::function<Profile(Random&, Eigen::Vector2d&)>;
-void expect_honest(const char* name, const FeatureRecipe& recipe, const Generate& generate) {
+void expect_honest(const char* name, const FeatureRecipe& recipe, const Generate& generate,
+                   double most_covered = 0.982) {
     auto finder = make_feature_finder(recipe);
     ASSERT_TRUE(finder) << name;
     Random random(24);
@@ -159,7 +160,7 @@ void expect_honest(const char* name, const FeatureRecipe& recipe, const Generate
     EXPECT_GE(n, 990) << name;
     // Errors of a pitch are uniform: the ellipse then covers up to 98 %.
     EXPECT_GE(covered / double(n), 0.93) << name;
-    EXPECT_LE(covered / double(n), 0.982) << name;
+    EXPECT_LE(covered / double(n), most_covered) << name;
     // Unbiased within a quarter of the spread.
     for (int k = 0; k < 2; ++k)
         EXPECT_LT(std::abs(bias[k] / n), 0.25 * std::sqrt(spread[k] / n) + 1e-6) << name << " " << k;
@@ -213,12 +214,16 @@ TEST(FeatureStatistics, CovariancesAreHonest) {
                   circle_scene(10, 120, 60, false));
     expect_honest("circle between flats", {"circle", {}, {}, {0, 0}}, circle_scene(4, 170, 10, true));
     expect_honest("small circle between flats", {"circle", {}, {}, {0, 0}}, circle_scene(2, 160, 20, true));
-    expect_honest("extremum", {"extremum", {}, {}, {0, 0}}, [&](Random& r, Eigen::Vector2d& t) {
-        t = {0, 2};
-        Profile p = sample(bead(-10, 10, 0, 6, 2), 0.05, unit(r));
-        add_noise(p, 0.02, r);
-        return p;
-    });
+    // The ellipse counts what a form that is no parabola might do; of one that is, it covers up to 99 %.
+    expect_honest(
+        "extremum", {"extremum", {}, {}, {0, 0}},
+        [&](Random& r, Eigen::Vector2d& t) {
+            t = {0, 2};
+            Profile p = sample(bead(-10, 10, 0, 6, 2), 0.05, unit(r));
+            add_noise(p, 0.02, r);
+            return p;
+        },
+        0.992);
     expect_honest("template", {"template", {}, sample(hem(-15, 15), 0.05), {5, 5}},
                   [&](Random& r, Eigen::Vector2d& t) {
                       const PlanarMotion m{8 * unit(r), -8 * unit(r), 0.2 * unit(r)};

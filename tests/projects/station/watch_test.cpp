@@ -247,6 +247,23 @@ TEST_F(Watching, AVerdictThatDidNotArriveIsToldWhenTheRobotAnswers) {
     EXPECT_THAT(texts, HasSubstr("robot R1: told now how its part ended (failed)"));
 }
 
+// It has called anew meanwhile: what was to be said of the part before would be taken for this one's.
+TEST_F(Watching, AVerdictThatDidNotArriveIsForgottenWithTheNextCall) {
+    cell->silent_sensor_at = "S3";
+    cell->deaf_to = PartVerdict::failed;
+    options.call_again_first = std::chrono::milliseconds(1);
+    options.parts = 2;
+    options.tell = [&](const WatchEvent& e) {
+        if (!std::holds_alternative<watched::RunDone>(e.happening)) return;
+        if (!cell->silent_sensor_at.empty()) part("CAR-2");
+        cell->silent_sensor_at.clear();
+        cell->deaf_to.reset();
+    };
+    cell->starts.push_back(StartSignal{"CAR-1", now_ns()});  // and no silence, in which it would be told
+    ASSERT_TRUE(watch(*station, options));
+    EXPECT_THAT(cell->verdicts, ElementsAre(PartVerdict::failed, PartVerdict::corrected));
+}
+
 TEST_F(Watching, ARobotThatGoesWhileASensorIsDeadIsToldTooAndAllAreBackAtOnce) {
     cell->dead_sensor = true;
     part("CAR-1");

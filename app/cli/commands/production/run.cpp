@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <set>
 
@@ -113,8 +114,10 @@ json event_json(const WatchEvent& e) {
 Expected<std::shared_ptr<spdlog::logger>> open_log(const std::string& file) {
     if (file.empty()) return std::shared_ptr<spdlog::logger>();
     SEAM_OK(check_replaceable(file));
-    // It is written on, and rotated away: that must not happen to another kind of file.
-    if (std::ifstream before(file, std::ios::binary); before) {
+    // It is written on, and rotated away: that must not happen to another kind of file. A pipe or terminal is not read.
+    std::error_code none;
+    if (std::filesystem::is_regular_file(file, none)) {
+        std::ifstream before(file, std::ios::binary);
         const int first = before.peek();
         if (first != std::ifstream::traits_type::eof() && first != '{')
             return input_error("is no log: its first line is no JSON object", file,

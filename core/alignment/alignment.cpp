@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/alignment/pass_registration.h"
 #include "core/correction/contour_fit.h"
+#include "core/median.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
@@ -127,6 +130,137 @@ struct Drift {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// What the polynomials leave of the motion within the jitter, and where: a notch, a weld nugget, a wave. One profile alone is a
+// profile gone wrong, so the middle of three neighbours counts; and what exceeds the noise, which is told by neighbours: beside
+// noise alone a line between two of them misses the one between by as much as the fit does.
+struct StandOff {
+    double most_mm = 0, at_mm = 0;
+};
+StandOff left_over(const Drift& drift, double jitter_mm) {
+    constexpr std::size_t kFewest = 7;
+    constexpr double kAlike = 1.8;            // of the noise: what is left is no noise
+    constexpr double kBeyond = 3, kSeen = 2;  // times the noise; the latter where it is none
+    const std::size_t n = drift.travel_mm.size();
+    if (n < kFewest) return {};
+    std::vector<std::size_t> order(n);
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](auto a, auto b) { return drift.travel_mm[a] < drift.travel_mm[b]; });
+    const auto travel = [&](std::size_t i) { return drift.travel_mm[order[i]]; };
+    std::vector<Eigen::Vector2d> middle(n, Eigen::Vector2d::Zero());
+    std::vector<bool> counts(n, false);
+    for (const Eigen::Index axis : {0, 1}) {
+        const PolynomialFit& f = axis == 0 ? drift.x : drift.z;
+        const std::vector<double>& value = axis == 0 ? drift.dx_mm : drift.dz_mm;
+        std::vector<double> rest(n), size, rough;
+        for (std::size_t i = 0; i < n; ++i) {
+            rest[i] = value[order[i]] - f.coefficient[0] - rise(f, travel(i), drift.from, drift.to);
+            size.push_back(std::abs(rest[i]));
+        }
+        for (std::size_t i = 1; i + 1 < n; ++i) {
+            const double wide = travel(i + 1) - travel(i - 1);
+            const double w = wide > 0 ? (travel(i + 1) - travel(i)) / wide : 0.5;
+            rough.push_back(std::abs(rest[i] - w * rest[i - 1] - (1 - w) * rest[i + 1]) /
+                            std::sqrt(1 + w * w + (1 - w) * (1 - w)));
+        }
+        const double noise = kMadToSigma * median(rough);
+        const bool alike = kMadToSigma * median(size) > kAlike * noise;
+        for (std::size_t i = 1; i + 1 < n; ++i) {
+            const double a = rest[i - 1], b = rest[i], c = rest[i + 1];
+            middle[i][axis] = std::max(std::min(a, b), std::min(std::max(a, b), c));
+            counts[i] = counts[i] || std::abs(middle[i][axis]) > (alike ? kSeen : kBeyond) * noise;
+        }
+    }
+    StandOff most;
+    for (std::size_t i = 0; i < n; ++i)
+        if (counts[i] && std::abs(travel(i)) <= jitter_mm && middle[i].norm() > most.most_mm)
+            most = {middle[i].norm(), travel(i)};
+    return most;
+}
+
+// A stretch of travel within the jitter in which the contour is not found.
+struct Unseen {
+    double from_mm = 0, to_mm = 0;
+    bool lost = false;       // profiles were recorded there
+    bool uncovered = false;  // hardly any were
+};
+Unseen unseen_within(const std::vector<TravelOffset>& offsets, double jitter_mm) {
+    constexpr double kLost = 0.1, kUncovered = 0.9, kUncoveredEnd = 0.25;  // of the jitter
+    constexpr double kByChance = 0.05;
+    constexpr double kSteps = 2.5;  // of the usual step, or the pass is as sparse as that
+    std::vector<const TravelOffset*> by_travel;
+    for (const TravelOffset& o : offsets)
+        if (std::isfinite(o.travel_mm)) by_travel.push_back(&o);
+    std::stable_sort(by_travel.begin(), by_travel.end(),
+                     [](auto a, auto b) { return a->travel_mm < b->travel_mm; });
+    std::vector<double> steps;
+    double last = -kInfinity, all_lost = 0;
+    for (const TravelOffset* o : by_travel) {
+        all_lost += !o->ok;
+        if (!o->ok) continue;
+        if (o->travel_mm > last && std::isfinite(last)) steps.push_back(o->travel_mm - last);
+        last = o->travel_mm;
+    }
+    const double step = steps.empty() ? 0 : median(steps);
+    Unseen worst;
+    double before = -kInfinity;
+    int lost = 0;
+    const auto close = [&](double after) {
+        const double from = std::max(before, -jitter_mm), to = std::min(after, jitter_mm);
+        const bool end = !std::isfinite(before) || !std::isfinite(after);
+        // As many in a row as the others that are lost here and there would hardly make by chance.
+        const double others = static_cast<double>(by_travel.size()) - lost;
+        const double by_chance = others * std::pow((all_lost - lost) / std::max(1.0, others), lost);
+        const bool is_lost = lost >= 2 && by_chance < kByChance && to - from > kLost * jitter_mm;
+        const bool uncovered = to - from > (end ? kUncoveredEnd : kUncovered) * jitter_mm &&
+                               (end || after - before > kSteps * step);
+        if ((is_lost || uncovered) && to - from > worst.to_mm - worst.from_mm)
+            worst = {from, to, is_lost, uncovered && !is_lost};
+        before = after;
+        lost = 0;
+    };
+    for (const TravelOffset* o : by_travel) {
+        if (o->ok)
+            close(o->travel_mm);
+        else
+            ++lost;
+    }
+    close(kInfinity);
+    return worst;
+}
+
+// Where the profile is broken (a gap, a rim over a frame) the two sides may move otherwise, and the whole takes their mean: then
+// what counts is the drift of the piece with the reference point. Answers by how much it differs within the jitter.
+double follow_piece(const Reference& best, std::span<const TravelProfile> pass,
+                    const AlignmentOptions& options, Drift& drift, std::vector<TravelOffset>& offsets) {
+    constexpr double kSure = 4;  // sigmas
+    if (!options.reference_mm || !drift.along.isZero()) return 0;
+    const auto piece =
+        register_piece(best, pass, outwards_from_trigger(pass, options.window_mm), *options.reference_mm);
+    if (!piece) return 0;
+    Drift own;
+    std::vector<TravelOffset> own_offsets = offsets;
+    for (std::size_t i = 0; i < pass.size(); ++i) {
+        const Registered& r = piece->found[i];
+        if (i == piece->index) continue;
+        own_offsets[i] = {pass[i].travel_mm};
+        if (!r.ok) continue;
+        own_offsets[i] = {pass[i].travel_mm, r.shift.x(), r.shift.y(), deg_from_rad(r.phi), r.rms, true};
+        own.add(own_offsets[i]);
+    }
+    if (!own.fit()) return 0;
+    const auto differs = [](const PolynomialFit& a, const PolynomialFit& b) {
+        const double by = a.coefficient[1] - b.coefficient[1];
+        return std::abs(by) > kSure * std::hypot(a.coefficient_sigma[1], b.coefficient_sigma[1]) ? by : 0.0;
+    };
+    const double apart = std::hypot(differs(own.x, drift.x), differs(own.z, drift.z)) * options.jitter_mm;
+    if (apart > 0) {
+        drift = std::move(own);
+        offsets = std::move(own_offsets);
+    }
+    return apart;
+}
+
 // Angles, their sigmas, the cure and the contour's radius.
 void state_direction(const Drift& drift, double jitter_mm, AlignmentResult& result) {
     const double sx = drift.x.coefficient[1], sz = drift.z.coefficient[1];
@@ -185,22 +319,23 @@ bool state_shape(const Reference& best, std::span<const TravelProfile> pass, con
     const Eigen::Vector2d point =
         options.reference_mm ? *options.reference_mm : centroid(pass[best.index].profile);
     result.shape_change_mm = std::max(std::sqrt(std::max(0.0, worst * worst - noise * noise)),
-                                      growth_mm(best, pass, point, options.jitter_mm));
+                                      std::max(growth_mm(best, pass, point, options.jitter_mm),
+                                               parting_mm(best, pass, point, options.jitter_mm)));
     // One profile alone is a profile gone wrong.
     return near_share.size() > 1 &&
            quantile(near_share, std::max(kBestShare, 1.0 / double(near_share.size() - 1))) < kSteadyShare;
 }
 
-AlignmentStatus judged(const AlignmentResult& result, double tolerance_mm, bool changes) {
+AlignmentStatus judged(const AlignmentResult& result, double tolerance_mm, bool changes, bool uncovered) {
     const double error = result.expected_error_mm, two_sigma = 2 * result.expected_error_sigma_mm;
     // Too uncertain to tell: within two sigma it may be either, and two sigma are more than the tolerance.
     const bool unsure = two_sigma > tolerance_mm;
     const bool seen_to_drift =
         error > tolerance_mm && (!unsure || result.sliding || error - two_sigma > tolerance_mm);
-    return seen_to_drift ? AlignmentStatus::drifting
-           : unsure      ? AlignmentStatus::undetermined
-           : changes     ? AlignmentStatus::shape_changes
-                         : AlignmentStatus::frozen;
+    return seen_to_drift         ? AlignmentStatus::drifting
+           : unsure || uncovered ? AlignmentStatus::undetermined
+           : changes             ? AlignmentStatus::shape_changes
+                                 : AlignmentStatus::frozen;
 }
 
 // By which rotation the sensor's travel follows the contour; empty: by none worth a word.
@@ -222,8 +357,8 @@ Text turn_advised(const AlignmentResult& result) {
         how);
 }
 
-Text cure_of(const AlignmentResult& result, const Drift& drift, const AlignmentOptions& options,
-             bool changes) {
+Text cure_of(const AlignmentResult& result, const Drift& drift, const AlignmentOptions& options, bool changes,
+             const StandOff& off, const Unseen& unseen) {
     Text cure;
     const auto say = [&](const Text& sentence) {
         if (!sentence.empty()) cure = joined(cure, "; ", sentence);
@@ -238,12 +373,23 @@ Text cure_of(const AlignmentResult& result, const Drift& drift, const AlignmentO
                      "the correction use the contour curve, or trigger more exactly",
                      result.radius_mm, rest));
     }
-    if (result.status == AlignmentStatus::undetermined && !result.sliding)
+    if (unseen.lost)
+        say(Text("the contour is not found from {:+.1f} to {:+.1f} mm of travel, within the jitter",
+                 unseen.from_mm, unseen.to_mm));
+    else if (unseen.uncovered)
+        say(
+            Text("the pass shows nothing from {:+.1f} to {:+.1f} mm of travel, within the jitter: record it "
+                 "from entry to exit",
+                 unseen.from_mm, unseen.to_mm));
+    else if (result.status == AlignmentStatus::undetermined && !result.sliding)
         say(
             Text("the drift is not known well enough to tell: {:.3f} mm with a sigma of {:.3f} mm; "
                  "record the pass "
                  "again with more profiles or less noise",
                  result.expected_error_mm, result.expected_error_sigma_mm));
+    if (off.most_mm > options.tolerance_mm)
+        say(Text("the contour stands off by {:.2f} mm at {:+.1f} mm of travel, within the jitter",
+                 off.most_mm, off.at_mm));
     if (changes)
         say("the profile changes its shape along the travel: teach the spot where the contour stays the "
             "same");
@@ -301,12 +447,16 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
         drift.add(result.offsets[i]);
     }
     if (!drift.fit()) return too_few(drift.travel_mm.size() + 1);
+    const double apart_mm = follow_piece(*best, pass, options, drift, result.offsets);
     state_direction(drift, options.jitter_mm, result);
     state_error(drift, options.jitter_mm, result);
     const bool lost = state_shape(*best, pass, options, result);
-    const bool changes = lost || result.shape_change_mm > options.tolerance_mm;
-    result.status = judged(result, options.tolerance_mm, changes);
-    result.cure = cure_of(result, drift, options, changes);
+    const StandOff off = left_over(drift, options.jitter_mm);
+    const Unseen unseen = unseen_within(result.offsets, options.jitter_mm);
+    result.shape_change_mm = std::max({result.shape_change_mm, off.most_mm, apart_mm});
+    const bool changes = lost || unseen.lost || result.shape_change_mm > options.tolerance_mm;
+    result.status = judged(result, options.tolerance_mm, changes, unseen.uncovered);
+    result.cure = cure_of(result, drift, options, changes, off, unseen);
     return result;
 }
 

@@ -6,7 +6,8 @@
 // whole registers (a noisy profile or one with a ghost in it does not do), giving the shift dx(y), dz(y) of
 // the spot's reference point and the turn dphi(y) against travel y. Polynomials of the lowest order that the
 // data ask for (1..3, F test) are fitted robustly; their slopes at y = 0 are the misalignment, their bend the
-// local radius, what registration leaves over is shape change.
+// local radius, what registration and fits leave over is shape change. Where the profile is broken and its pieces move
+// otherwise, that piece counts which the reference point lies on.
 //
 // Noise model: independent, equal noise of the registered shifts from profile to profile, estimated from the
 // fits' residuals; the trigger profile's own noise is common to all and only moves the constant, so it takes
@@ -41,11 +42,14 @@ struct AlignmentOptions {
 };
 
 enum class AlignmentStatus {
-    frozen,               // the jitter causes at most the tolerance
-    drifting,             // it causes more; `cure` says which rotation mends it
-    shape_changes,        // stands still as a whole, but the profile changes its shape within the jitter
+    frozen,    // the jitter causes at most the tolerance
+    drifting,  // it causes more; `cure` says which rotation mends it
+    // Stands still as a whole, but within the jitter the profile changes its shape, the contour stands off in places (a
+    // notch, a wave), or is not found.
+    shape_changes,
     not_enough_profiles,  // fewer than 5 usable profiles within the window, or less than 1 mm of travel
-    undetermined          // what is seen does not tell frozen from drifting: the drift's sigma is too large
+    // What is seen does not tell frozen from drifting: the drift's sigma is too large, or the pass leaves out much of the jitter.
+    undetermined
 };
 std::string_view to_string(AlignmentStatus status);
 
@@ -74,8 +78,9 @@ struct AlignmentResult {
                                                                  // straight within noise (3 sigma)
     double expected_error_mm = 0;        // largest shift within the jitter, from slope and curvature
     double expected_error_sigma_mm = 0;  // infinite where a direction is not seen
-    // The larger of: rms of what remains after rigid registration, the profile's noise taken off; steady
-    // growth within the jitter of the deviation of a piece of the contour.
+    // The largest of what within the jitter is no rigid motion along the fits, beyond noise: rms that remains after
+    // registration; steady growth of one piece of the contour against another, or of a break in it (a gap); how far the
+    // piece with the reference point moves otherwise than the whole; offsets that the fits leave, of three neighbours alike.
     double shape_change_mm = 0;
     bool sliding = false;               // the profile is a straight line: only the drift across it is seen
     ContourCurve curve;                 // of the reference point, for the correction, see correction.h

@@ -1,9 +1,11 @@
 #include "core/alignment/pass_registration.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/correction/contour_fit.h"
@@ -207,6 +209,76 @@ std::optional<Reference> choose_reference(std::span<const TravelProfile> pass,
     return best;
 }
 
+namespace {
+
+// Of a straight line through the values, where it is beyond its noise; else 0.
+double sure_slope(const std::vector<double>& travel, const std::vector<double>& value) {
+    constexpr double kSure = 4;  // sigmas
+    if (travel.size() < static_cast<std::size_t>(kFewestProfiles)) return 0;
+    const PolynomialFit fit = fit_polynomial(travel, value, 1);
+    return fit.ok && std::abs(fit.coefficient[1]) > kSure * fit.coefficient_sigma[1] ? fit.coefficient[1] : 0;
+}
+
+// Where the contour is broken: its last point before and its first behind, and how many points that one is.
+struct Break {
+    Eigen::Vector2d before, after;
+    std::size_t index = 0;
+};
+std::vector<Break> breaks_of(const Profile& p) {
+    constexpr double kOfPitch = 5, kLeast_mm = 0.3;
+    std::vector<Eigen::Vector2d> points;
+    std::vector<std::size_t> index;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        if (!usable(p, i)) continue;
+        points.emplace_back(p.x_mm[i], p.z_mm[i]);
+        index.push_back(i);
+    }
+    std::vector<double> apart;
+    for (std::size_t i = 1; i < points.size(); ++i) apart.push_back((points[i] - points[i - 1]).norm());
+    std::vector<double> sorted = apart;
+    const double least = std::max(kOfPitch * median(sorted), kLeast_mm);
+    std::vector<Break> out;
+    for (std::size_t i = 0; i < apart.size(); ++i)
+        if (apart[i] > least) out.push_back({points[i], points[i + 1], index[i + 1]});
+    return out;
+}
+
+}  // namespace
+
+std::optional<Reference> register_piece(const Reference& reference, std::span<const TravelProfile> pass,
+                                        const std::vector<std::size_t>& order, const Eigen::Vector2d& point) {
+    constexpr std::size_t kFewestPoints = 20;
+    const Profile& whole = pass[reference.index].profile;
+    const std::vector<Break> breaks = breaks_of(whole);
+    if (breaks.empty()) return std::nullopt;
+    std::size_t first = 0, last = 0;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k <= breaks.size(); ++k) {
+        const std::size_t from = k == 0 ? 0 : breaks[k - 1].index;
+        const std::size_t to = k == breaks.size() ? whole.size() : breaks[k].index;
+        for (std::size_t i = from; i < to; ++i) {
+            if (!usable(whole, i)) continue;
+            const double off = (Eigen::Vector2d(whole.x_mm[i], whole.z_mm[i]) - point).norm();
+            if (off >= nearest) continue;
+            nearest = off;
+            first = from, last = to;
+        }
+    }
+    Profile piece;
+    for (std::size_t i = first; i < last; ++i) {
+        if (!usable(whole, i)) continue;
+        piece.x_mm.push_back(whole.x_mm[i]);
+        piece.z_mm.push_back(whole.z_mm[i]);
+    }
+    if (piece.size() < kFewestPoints || !straight_direction(piece).isZero()) return std::nullopt;
+    auto matcher = ContourMatcher::make(piece, point);
+    if (!matcher) return std::nullopt;
+    Reference r = register_to(reference.index, std::move(*matcher), pass, order, point);
+    if (!r.good) return std::nullopt;
+    for (Registered& f : r.found) f.ok = f.ok && f.slides.isZero();
+    return r;
+}
+
 double growth_mm(const Reference& reference, std::span<const TravelProfile> pass,
                  const Eigen::Vector2d& point, double jitter_mm) {
     constexpr int kPieces = 12;
@@ -227,14 +299,46 @@ double growth_mm(const Reference& reference, std::span<const TravelProfile> pass
             middle[k].push_back(median(piece[k]));
         }
     }
-    double most = 0;
+    double up = 0, down = 0;
     for (std::size_t k = 0; k < kPieces; ++k) {
-        if (travel[k].size() < static_cast<std::size_t>(kFewestProfiles)) continue;
-        const PolynomialFit fit = fit_polynomial(travel[k], middle[k], 1);
-        if (!fit.ok || std::abs(fit.coefficient[1]) < 4 * fit.coefficient_sigma[1]) continue;
-        most = std::max(most, std::abs(fit.coefficient[1]) * jitter_mm);
+        const double slope = sure_slope(travel[k], middle[k]);
+        up = std::max(up, slope);
+        down = std::min(down, slope);
     }
-    return most;
+    return (up - down) * jitter_mm;
+}
+
+double parting_mm(const Reference& reference, std::span<const TravelProfile> pass,
+                  const Eigen::Vector2d& point, double jitter_mm) {
+    const std::vector<Break> taught = breaks_of(pass[reference.index].profile);
+    struct Width {
+        std::vector<double> travel, along, across;
+    };
+    std::vector<Width> widths(taught.size());
+    for (std::size_t i = 0; i < pass.size(); ++i) {
+        const Registered& f = reference.found[i];
+        if (i != reference.index && !f.ok) continue;
+        const PlanarMotion motion = i == reference.index ? PlanarMotion{} : motion_of(f, point);
+        const std::vector<Break> seen = breaks_of(pass[i].profile);
+        for (std::size_t k = 0; k < taught.size(); ++k) {
+            const Eigen::Vector2d before = motion * taught[k].before, after = motion * taught[k].after;
+            const auto off = [&](const Break& b) {
+                return std::max((b.before - before).norm(), (b.after - after).norm());
+            };
+            const auto nearest = std::min_element(
+                seen.begin(), seen.end(), [&](const Break& a, const Break& b) { return off(a) < off(b); });
+            if (nearest == seen.end() || off(*nearest) > kReach_mm) continue;
+            const Eigen::Vector2d width =
+                Eigen::Rotation2Dd(-motion.phi_rad) * (nearest->after - nearest->before);
+            widths[k].travel.push_back(pass[i].travel_mm);
+            widths[k].along.push_back(width.x());
+            widths[k].across.push_back(width.y());
+        }
+    }
+    double most = 0;
+    for (const Width& w : widths)
+        most = std::max(most, std::hypot(sure_slope(w.travel, w.along), sure_slope(w.travel, w.across)));
+    return most * jitter_mm;
 }
 
 }  // namespace seamwright::alignment

@@ -39,9 +39,18 @@ std::optional<Reference> choose_reference(std::span<const TravelProfile> pass,
                                           const std::vector<std::size_t>& order,
                                           const std::optional<Eigen::Vector2d>& point);
 
-// How much a piece of the contour grows or sinks against the rest within the jitter, beyond its noise: the
-// largest over the pieces.
+// The same, of that piece of the reference's profile alone that is unbroken and nearest to the point. Nothing where the
+// profile is one piece, or where that one is too short, straight, or not found in most of the pass.
+std::optional<Reference> register_piece(const Reference& reference, std::span<const TravelProfile> pass,
+                                        const std::vector<std::size_t>& order, const Eigen::Vector2d& point);
+
+// How much the pieces of the contour grow or sink against each other within the jitter, beyond their noise.
 double growth_mm(const Reference& reference, std::span<const TravelProfile> pass,
                  const Eigen::Vector2d& point, double jitter_mm);
+
+// How much the two sides of a break in the contour (a gap, a sheet over another) part within the jitter, beyond their noise:
+// the most over its breaks.
+double parting_mm(const Reference& reference, std::span<const TravelProfile> pass,
+                  const Eigen::Vector2d& point, double jitter_mm);
 
 }  // namespace seamwright::alignment

@@ -226,7 +226,7 @@ Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const Pas
     SEAM_OK(measure_standing(
         station, spot, poses, options.cancel, options.progress,
         [&](std::size_t i, const SpotMeasurer& measurer, const SpotMeasurement& m) {
-            if (measurer.profile().size() > 0) pass.profiles.push_back({travel[i], measurer.profile()});
+            pass.profiles.push_back({travel[i], measurer.profile()});  // where nothing was seen, too
             if (m.status == SpotStatus::measured)
                 pass.references.push_back({travel[i], m.feature.point_mm.x(), m.feature.point_mm.y()});
         }));
@@ -242,7 +242,8 @@ AlignmentOptions alignment_options(const Spot& spot) {
 }
 
 Expected<JudgedPass> judge_pass(const Spot& spot, RecordedPass pass, const AlignmentOptions& options) {
-    if (pass.profiles.empty())
+    if (std::none_of(pass.profiles.begin(), pass.profiles.end(),
+                     [](const TravelProfile& t) { return t.profile.size() > 0; }))
         return input_error("no profile was seen on the whole pass", Text("spot {}", spot.id),
                            "look at the live picture: light, stand-off, calibration");
     SEAM_TRY(auto result, check_alignment(pass.profiles, options));

@@ -150,6 +150,8 @@ std::string align_csv(std::span<const TravelProfile> pass) {
     fmt::memory_buffer out;
     fmt::format_to(std::back_inserter(out), "travel_mm,profile_index,x_mm,z_mm\n");
     for (std::size_t p = 0; p < pass.size(); ++p) {
+        if (pass[p].profile.size() == 0)  // nothing was seen there, which is told as well
+            fmt::format_to(std::back_inserter(out), "{},{},,\n", pass[p].travel_mm, p);
         for (std::size_t i = 0; i < pass[p].profile.size(); ++i) {
             fmt::format_to(std::back_inserter(out), "{},{},", pass[p].travel_mm, p);
             append_number(out, pass[p].profile.x_mm[i]);

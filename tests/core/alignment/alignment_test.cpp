@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 #include <random>
 
 #include "core/geometry/pose.h"
@@ -341,6 +343,109 @@ TEST(Alignment, DriftIsThatOfTheReferencePoint) {
     o.reference_mm = Eigen::Vector2d(8.5, -1.9);
     const AlignmentResult r = checked(pass(turn(1, 0), 1, 0.01, rng), o);
     EXPECT_NEAR(r.yaw_deg, 1.0, 0.03);
+}
+
+// A rim on a flat, moved as `shift` says of the travel; nothing where it says nothing.
+using Shift = std::function<std::optional<Eigen::Vector2d>(double y)>;
+std::vector<TravelProfile> moved_rim(const Shift& shift, double noise, Rng& rng, double from = -20,
+                                     double to = 20) {
+    std::vector<TravelProfile> out;
+    for (double y = from; y <= to + 1e-9; y += 1) {
+        TravelProfile t;
+        t.travel_mm = y;
+        if (const auto by = shift(y))
+            for (double u = -14; u < 0; u += 0.06) {
+                t.profile.x_mm.push_back(u + by->x());
+                t.profile.z_mm.push_back(by->y() + noise * normal(rng));
+            }
+        if (const auto by = shift(y))
+            for (double a = 0; a < 1.4; a += 0.02) {
+                t.profile.x_mm.push_back(3 * std::sin(a) + by->x());
+                t.profile.z_mm.push_back(3 * (std::cos(a) - 1) + by->y() + noise * normal(rng));
+            }
+        out.push_back(t);
+    }
+    return out;
+}
+
+// Neither drift nor bend of low order, but where the robot may fire the contour is elsewhere, or not at all.
+TEST(Alignment, WhatStandsOffWithinTheJitterIsNotFrozen) {
+    const auto still = [](double) { return Eigen::Vector2d(0, 0); };
+    const std::vector<std::pair<const char*, Shift>> shapes = {
+        {"notch", [](double y) { return Eigen::Vector2d(y >= 2 && y <= 4 ? -1 : 0, 0); }},
+        {"nugget", [](double y) { return Eigen::Vector2d(0, y >= 1 && y <= 4 ? 0.4 : 0); }},
+        {"wave in x", [](double y) { return Eigen::Vector2d(0.3 * std::sin(y * EIGEN_PI / 4), 0); }},
+        {"long wave in x", [](double y) { return Eigen::Vector2d(0.15 * std::sin(y * EIGEN_PI / 6), 0); }},
+        {"wave in z", [](double y) { return Eigen::Vector2d(0, 0.2 * std::sin(y * EIGEN_PI / 5)); }},
+        {"ends at 2 mm",
+         [](double y) {
+             return y > 2 ? std::nullopt : std::optional<Eigen::Vector2d>({0, 0});
+         }},
+    };
+    AlignmentOptions o;
+    o.reference_mm = Eigen::Vector2d(3, -2.5);
+    for (const double noise : {0.02, 0.05, 0.1})
+        for (const auto& [name, shift] : shapes) {
+            Rng rng(31);
+            const AlignmentResult r = checked(moved_rim(shift, noise, rng), o);
+            EXPECT_EQ(r.status, AlignmentStatus::shape_changes) << name << " " << noise << " " << r.cure;
+            EXPECT_THAT(r.cure, HasSubstr("within the jitter")) << name;
+        }
+    for (int seed = 0; seed < 100; ++seed) {
+        Rng rng(100 + static_cast<unsigned>(seed));
+        const AlignmentResult r = checked(moved_rim(still, 0.02 + 0.0005 * seed, rng), o);
+        EXPECT_EQ(r.status, AlignmentStatus::frozen) << seed << " " << r.cure;
+    }
+}
+
+TEST(Alignment, WhereNothingWasRecordedNothingIsKnown) {
+    const auto still = [](double) { return Eigen::Vector2d(0, 0); };
+    Rng rng(32);
+    for (const auto& [from, to] : {std::pair{8.0, 20.0}, {-3.0, 3.0}, {-20.0, 0.0}}) {
+        const AlignmentResult r = checked(moved_rim(still, 0.03, rng, from, to));
+        EXPECT_EQ(r.status, AlignmentStatus::undetermined) << from << " " << to << " " << r.cure;
+        EXPECT_THAT(r.cure, HasSubstr("from entry to exit"));
+    }
+    EXPECT_EQ(checked(moved_rim(still, 0.03, rng, -5, 5)).status, AlignmentStatus::frozen);
+}
+
+// Two sheets, each straight, that part: neither the mean of both nor one of them is what stands still.
+TEST(Alignment, TwoEdgesThatPartAreNotFrozen) {
+    AlignmentOptions o;
+    o.reference_mm = Eigen::Vector2d(-1.5, 0);
+    for (const auto& [left, right] : {std::pair{1.0, 0.0}, {0.9, -0.9}, {0.5, -1.0}}) {
+        Rng rng(33);
+        std::vector<TravelProfile> p;
+        for (double y = -20; y <= 20 + 1e-9; y += 1) {
+            TravelProfile t;
+            t.travel_mm = y;
+            const double l = -1.5 + y * std::tan(rad_from_deg(left)),
+                         r = 1.5 + y * std::tan(rad_from_deg(right));
+            for (double x = -15; x < 15; x += 0.06) {
+                if (x > l && x < r) continue;
+                t.profile.x_mm.push_back(x);
+                t.profile.z_mm.push_back((x < l ? 0 : 0.4) + 0.03 * normal(rng));
+            }
+            p.push_back(t);
+        }
+        const AlignmentResult r = checked(p, o);
+        EXPECT_NE(r.status, AlignmentStatus::frozen) << left << " " << right;
+        EXPECT_NEAR(r.shape_change_mm,
+                    5 * std::abs(std::tan(rad_from_deg(left)) - std::tan(rad_from_deg(right))), 0.03);
+    }
+    // A rim that turns away over a frame that stands still: the rim is meant.
+    o.reference_mm = Eigen::Vector2d(3, -2.5);
+    Rng rng(34);
+    std::vector<TravelProfile> p =
+        moved_rim([](double y) { return Eigen::Vector2d(y * std::tan(rad_from_deg(1)), 0); }, 0.03, rng);
+    for (TravelProfile& t : p)
+        for (double x = t.profile.x_mm.back() + 0.06; x < 16; x += 0.06) {
+            t.profile.x_mm.push_back(x);
+            t.profile.z_mm.push_back(-12 + 0.03 * normal(rng));
+        }
+    const AlignmentResult r = checked(p, o);
+    EXPECT_EQ(r.status, AlignmentStatus::drifting);
+    EXPECT_NEAR(r.yaw_deg, 1, 0.1);
 }
 
 TEST(Alignment, TooLittleIsSaid) {

@@ -45,6 +45,12 @@ Expected<CandidatesTable> of_image(const std::string& path, const TrackArguments
     SEAM_TRY(const auto choice, choose_channel(path));
     Frame frame;
     SEAM_OK(read_image_file(path, frame, 0, choice.channel));
+    if (model && model->camera.width > 0 &&
+        (model->camera.width != frame.image.width || model->camera.height != frame.image.height))
+        return input_error(
+            Text("it has {} x {} pixels, the calibration was made with images of {} x {}", frame.image.width,
+                 frame.image.height, model->camera.width, model->camera.height),
+            path, "give images of that camera at that resolution");
     PeakOptions options;
     options.per_line = a.per_line;
     options.scan = a.rows ? ScanLines::rows : ScanLines::columns;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/correction/nuisance.h"
@@ -97,6 +98,19 @@ bool known(Accepted* accepted, std::size_t n, const Matrix6& covariance) {
 
 tl::unexpected<Error> twice(const std::string& id) {
     return input_error(Text("the spot id \"{}\" occurs twice", id), "spots", "give every spot its own id");
+}
+
+// One measure under two ids: the same numbers of the same place. What was measured twice has another noise.
+bool same_measure(const SpotObservation& a, const SpotObservation& b) {
+    return a.measured_mm == b.measured_mm && a.reference_mm == b.reference_mm &&
+           a.weights.cwiseProduct(b.weights).maxCoeff() > 0 &&
+           a.workobject_from_sensor.matrix() == b.workobject_from_sensor.matrix();
+}
+
+tl::unexpected<Error> copied(const SpotObservation& a, const SpotObservation& b) {
+    return input_error(
+        Text("\"{}\" and \"{}\" are one measure: pose, reference and measured point are equal", a.id, b.id),
+        "spots", "keep one of them, or measure the spot once more");
 }
 
 Expected<void> check_spot(std::size_t n, const SpotObservation& s, bool measured, Accepted* accepted) {
@@ -198,6 +212,7 @@ Expected<void> check_region(std::span<const SpotObservation> spots, const Correc
         for (std::size_t n = 0; n < spots.size(); ++n) {
             for (std::size_t k = 0; k < n; ++k) {
                 if (spots[n].id == spots[k].id) return twice(spots[n].id);
+                if (measured && same_measure(spots[k], spots[n])) return copied(spots[k], spots[n]);
             }
         }
     } else {
@@ -206,6 +221,19 @@ Expected<void> check_region(std::span<const SpotObservation> spots, const Correc
         std::sort(ids.begin(), ids.end());
         const auto same = std::adjacent_find(ids.begin(), ids.end());
         if (same != ids.end()) return twice(std::string(*same));
+        std::vector<const SpotObservation*> by_measure;
+        for (const SpotObservation& s : spots) by_measure.push_back(&s);
+        const auto key = [](const SpotObservation* s) {
+            const Eigen::Vector3d &m = s->measured_mm, &r = s->reference_mm;
+            const Eigen::Vector3d at = s->workobject_from_sensor.translation();
+            return std::array{m.x(), m.y(), m.z(), r.x(), r.y(), r.z(), at.x(), at.y(), at.z()};
+        };
+        std::sort(by_measure.begin(), by_measure.end(),
+                  [&](const auto* a, const auto* b) { return key(a) < key(b); });
+        for (std::size_t n = 1; measured && n < by_measure.size(); ++n)
+            for (std::size_t k = n; k-- > 0 && key(by_measure[k]) == key(by_measure[n]);)
+                if (same_measure(*by_measure[k], *by_measure[n]))
+                    return copied(*by_measure[k], *by_measure[n]);
     }
     if (accepted) {
         for (std::size_t n = 0; n < spots.size(); ++n) {

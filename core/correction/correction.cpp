@@ -6,12 +6,18 @@
 
 #include "core/correction/region_system.h"
 #include "core/correction/wrong_spots.h"
+#include "core/geometry/decompositions.h"
 #include "core/numbers.h"
 
 namespace seamwright {
 namespace {
 
 using namespace correction;
+
+// Times the information of the taught geometry: twice as sure by the displacement alone.
+constexpr double kLent = 4;
+// Chi-square by which a displacement must explain the measures better than its mirror image.
+constexpr double kClearOfMirror = 9;
 
 }  // namespace
 
@@ -84,6 +90,8 @@ template void report_spread(const RegionSystem&, const Spread&, const Observabil
 
 struct RegionSolver::Impl {
     RegionSystem taught, system;
+    Linearization taught_lin;
+    Spread taught_spread;
     Accepted accepted;
     WrongSpotSearch search;
     std::vector<double> factor;
@@ -150,21 +158,60 @@ struct RegionSolver::Impl {
         }
     }
 
+    // With the spots that are used.
+    void judge_taught() {
+        taught.linearize({}, factor, taught_lin);
+        taught_spread = taught.spread(taught_lin, {});
+    }
+
     // What only the displacement itself makes visible is not known: a round rim shows its turn in the second
     // order alone, in either sense alike and like a rim that has grown. And a wild measure lends no lever.
     bool refused_as_taught(std::span<const SpotObservation> spots, const CorrectionOptions& options,
                            RegionCorrection& r) {
         taught.load(spots, options, true, &accepted);
-        Linearization lin;
-        const State start;
-        taught.linearize(start, factor, lin);
-        const Spread before = taught.spread(lin, start);
-        if (before.regular && taught.surely_observable(before)) return false;
-        const Observability seen = taught.observability(lin, start);
+        judge_taught();
+        if (taught_spread.regular && taught.surely_observable(taught_spread)) return false;
+        const Observability seen = taught.observability(taught_lin, {});
         if (seen.ok) return false;
         fit.clear();
         fill_spots(spots, r);
-        refuse(seen, start, before, r);
+        refuse(seen, {}, taught_spread, r);
+        return true;
+    }
+
+    // A region that is observed as taught, but weakly, is in between: what the second order adds is taken back, the
+    // stated sigma is that of the taught geometry. False when the displacement could as well be its mirror image along
+    // such a direction, which `seen` then names.
+    bool told_from_mirror(Spread& spread, Observability& seen) const {
+        Matrix6 turn = Matrix6::Zero();
+        turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = fit.state.rotation;
+        const Matrix6 before = turn.lazyProduct(taught_spread.bread.lazyProduct(turn.transpose()));
+        // Sum over all directions of the gain in information.
+        if (fit.lin.information.cwiseProduct(before).sum() < system.free_count() + kLent - 1) return true;
+        const SymmetricEigen own = symmetric_eigen(before);
+        const Matrix6 root = own.vectors * own.values.cwiseMax(0).cwiseSqrt().asDiagonal();
+        const SymmetricEigen gain = symmetric_eigen(root.transpose() * fit.lin.information * root);
+        const Matrix6 weight = turn * taught_lin.information * turn.transpose();
+        const auto moved = [&](const State& state, const Vector6& along) {
+            Vector6 xi;
+            xi << state.rotation * system.centroid() + state.translation - system.centroid(),
+                system.spread_mm() * rotation_log(state.rotation);
+            return along.dot(weight * xi);  // in sigmas
+        };
+        for (Eigen::Index k = 0; k < gain.values.size(); ++k) {
+            if (!(gain.values[k] > kLent)) continue;
+            const Vector6 along = root * gain.vectors.col(k);  // a sigma as taught
+            const double here = moved(fit.state, along);
+            RegionSystem::Fit mirrored;
+            system.fit(factor, mirrored, system.shifted(fit.state, -2 * here * along));
+            if (mirrored.converged && std::abs(moved(mirrored.state, along) - here) > 1 &&
+                mirrored.lin.cost < fit.lin.cost + kClearOfMirror) {
+                seen.weak = along.normalized();
+                seen.weakest_sigma_mm = along.norm();
+                return false;
+            }
+            spread.covariance += (1 - 1 / gain.values[k]) * along * along.transpose();
+        }
         return true;
     }
 
@@ -205,6 +252,7 @@ struct RegionSolver::Impl {
             if (verdict == Verdict::found || verdict == Verdict::noisy) {
                 spread = system.spread(fit.lin, fit.state);
                 a = agreement(system, fit, spread, factor);
+                judge_taught();
             }
         }
         r.iterations = fit.iterations;
@@ -233,8 +281,14 @@ struct RegionSolver::Impl {
             }
             return {};
         }
-        if (system.repeats()) {
-            const RegionSystem::Parts parts = system.parts(fit.shared, fit.state, factor, spread);
+        const bool repeats = system.repeats();
+        const RegionSystem::Parts parts =
+            repeats ? system.parts(fit.shared, fit.state, factor, spread) : RegionSystem::Parts{};
+        if (!told_from_mirror(spread, seen)) {
+            refuse(seen, fit.state, spread, r);
+            return {};
+        }
+        if (repeats) {
             report_spread(system, spread, seen, fit.state, &parts, r);
         } else {
             report_spread(system, spread, seen, fit.state, nullptr, r);

@@ -48,12 +48,12 @@
 // part (noise, travel, the arrivals of the run), and `systematic`, the same for all parts (all others). With priors
 // of 0 everything is as without them, bit for bit.
 //
-// Observability. A displacement is judged by what it does to the spots, not to the origin of the work object,
-// which may lie metres away: it is written as translation of the spots' centroid (mm) and rotation (rad), the
-// rotation counting as (rms distance of the spots from their centroid) x angle, in mm. A free direction is
-// unobservable when its predicted standard deviation in this sense exceeds sigma_limit_mm, or its rotation
-// alone sigma_limit_deg, or the information is singular. Then nothing is returned but the verdict: no
-// regularisation.
+// Observability. A displacement is judged by what it does to the spots, not to the origin of the work object, which may
+// lie metres away: as translation of the spots' centroid (mm) and rotation (rad, times the rms distance of the spots
+// from their centroid). A free direction is unobservable when its predicted standard deviation in this sense exceeds
+// sigma_limit_mm, or its rotation alone sigma_limit_deg, or the information is singular, as taught or as displaced; or
+// when most of the information is the displacement's own (a round rim's turn shows in the second order alone, like its
+// growth) and the mirror image explains the measures as well. Else the taught sigma counts there. No regularisation.
 
 #include <Eigen/Core>
 #include <array>
@@ -217,9 +217,9 @@ struct RegionCorrection {
     int iterations = 0;
 };
 
-// Refuses (Error): no spots, duplicate ids, non-finite numbers, sigma <= 0, negative weights, no free degree,
-// a pose that is none, coordinates beyond 10 km, a prior that is no covariance, a sensor without prior beside
-// others that have one.
+// Refuses (Error): no spots, duplicate ids, one measure under two ids, non-finite numbers, sigma <= 0, negative weights,
+// no free degree, a pose that is none, coordinates beyond 10 km, a prior that is no covariance, a sensor without prior
+// beside others that have one.
 //
 // Wrong measures. Each spot's residual is studentised with its own covariance (what the other spots leave of
 // it). When one exceeds chance, the smallest set of spots is sought without which all others agree with each

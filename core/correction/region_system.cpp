@@ -454,8 +454,15 @@ void RegionSystem::fit_shared(std::span<const double> factor, Fit& out) const {
     }
 }
 
-void RegionSystem::fit(std::span<const double> factor, Fit& out) const {
+State RegionSystem::shifted(State state, const Vector6& xi) const {
+    const Matrix6 b = xi_from_parameters(state);
+    step(state, all_free_ ? xi : Vector6(least_squares(b, xi).x), xi);
+    return state;
+}
+
+void RegionSystem::fit(std::span<const double> factor, Fit& out, const State& from) const {
     out.clear();
+    out.state = from;
     linearize(out.state, factor, out.lin);
     double damping = 0;
     double last_gain = std::numeric_limits<double>::infinity(), last_size = 0;

@@ -160,9 +160,11 @@ class RegionSystem {
         Shared shared;
         void clear();  // keeps the memory
     };
-    // Levenberg-Marquardt from identity; then, where sensors have priors, Gauss-Newton steps with their errors
+    // Levenberg-Marquardt from `from`; then, where sensors have priors, Gauss-Newton steps with their errors
     // as unknowns.
-    void fit(std::span<const double> factor, Fit& out) const;
+    void fit(std::span<const double> factor, Fit& out, const State& from = {}) const;
+    // Displaced further by xi, to first order where single degrees are fixed.
+    State shifted(State state, const Vector6& xi) const;
     // Residual and rows at the fit as residual() gives them, freed of the sensors' errors as estimated.
     void cleared(std::size_t n, const Fit& fit, Eigen::Vector3d& e, Rows& rows) const;
     // The covariance that the sensors' uncertainty leaves in that residual, and a quick upper bound of it.

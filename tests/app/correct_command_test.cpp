@@ -93,6 +93,40 @@ TEST_F(Cli, CorrectNamesTheWrongSpotAmongEight) {
     EXPECT_NEAR(a["displacement"]["xyz"][0].get<double>(), 6, 1e-6);
 }
 
+// What the gate would not send is no 0, and the sigma that the scatter leaves stands beside the stated one.
+TEST_F(Cli, CorrectIsNotOkWhereTheSpotsContradictEachOther) {
+    json job = door_job(8, displacement());
+    const json calm = answer({"correct", write("job.json", job.dump())}, 0);
+    EXPECT_EQ(calm["consistent"], true);
+    EXPECT_EQ(calm["sigma_scattered"], calm["sigma"]);
+    for (std::size_t n = 0; n < 8; ++n) {
+        double& x = job["spots"][n]["measured"][0].get_ref<double&>();
+        double& z = job["spots"][n]["measured"][2].get_ref<double&>();
+        x += n % 2 == 0 ? 0.15 : -0.15;
+        z += n % 4 < 2 ? 0.15 : -0.15;
+    }
+    const std::vector<std::string> command{"correct", write("job.json", job.dump()), "--json", "-"};
+    const ProgramResult r = run(command);
+    EXPECT_EQ(r.exit_code, 1);
+    EXPECT_THAT(r.err, HasSubstr("times the"));
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    const json a = json::parse(r.out);
+    EXPECT_EQ(a["status"], "ok");
+    EXPECT_EQ(a["consistent"], false);
+    const double times = std::sqrt(a["variance_factor"].get<double>());
+    EXPECT_GT(times, 3);
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(a["sigma_scattered"]["xyz_mm"][i].get<double>(),
+                    times * a["sigma"]["xyz_mm"][i].get<double>(), 1e-9);
+}
+
+TEST_F(Cli, CorrectRefusesOneMeasureUnderTwoIds) {
+    json job = door_job(8, displacement());
+    job["spots"].push_back(job["spots"][2]);
+    job["spots"].back()["id"] = "copy";
+    expect_refused({"correct", write("job.json", job.dump())}, "\"S3\" and \"copy\" are one measure");
+}
+
 TEST_F(Cli, CorrectTakesTheCovarianceOfAMeasureInPlaceOfItsSigma) {
     json job = door_job(8, displacement());
     const auto sigma_of = [&] {

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/geometry/notation.h"
 #include "devices/exchange/pose_json.h"
 
@@ -30,15 +33,22 @@ std::string pose_text(const Pose& pose) {
 }
 
 namespace {
+json sigma_json(const Eigen::Vector3d& xyz_mm, const Eigen::Vector3d& abc_deg) {
+    return {{"xyz_mm", vector_json(xyz_mm)}, {"abc_deg", vector_json(abc_deg)}};
+}
+
+// Of a correction whose spots contradict each other: the stated sigma times their scatter; else as stated.
+DofSigma scattered_sigma(const RegionCorrection& c) {
+    const double times = c.consistent ? 1.0 : std::sqrt(std::max(1.0, c.variance_factor));
+    return {times * c.sigma_xyz_mm, times * c.sigma_abc_deg};
+}
+
 // "sigma", "covariance" and their two parts, of a correction or a plan.
 template <class T>
 void put_spread(const T& r, json& out) {
-    const auto sigma = [](const Eigen::Vector3d& xyz, const Eigen::Vector3d& abc) {
-        return json{{"xyz_mm", vector_json(xyz)}, {"abc_deg", vector_json(abc)}};
-    };
-    out["sigma"] = sigma(r.sigma_xyz_mm, r.sigma_abc_deg);
-    out["sigma_random"] = sigma(r.sigma_random.xyz_mm, r.sigma_random.abc_deg);
-    out["sigma_systematic"] = sigma(r.sigma_systematic.xyz_mm, r.sigma_systematic.abc_deg);
+    out["sigma"] = sigma_json(r.sigma_xyz_mm, r.sigma_abc_deg);
+    out["sigma_random"] = sigma_json(r.sigma_random.xyz_mm, r.sigma_random.abc_deg);
+    out["sigma_systematic"] = sigma_json(r.sigma_systematic.xyz_mm, r.sigma_systematic.abc_deg);
     out["covariance"] = matrix_json(r.covariance);
     out["covariance_random"] = matrix_json(r.covariance_random);
     out["covariance_systematic"] = matrix_json(r.covariance_systematic);
@@ -62,26 +72,31 @@ json correction_json(const RegionCorrection& c) {
                 {"displacement", pose_json(c.displacement.workobject_from_movedworkobject)},
                 {"rms_mm", c.rms_mm},
                 {"redundancy", c.redundancy},
+                {"consistent", c.consistent},
+                {"variance_factor", c.variance_factor},
                 {"iterations", c.iterations},
                 {"spots", spots},
                 {"unobservable", c.unobservable},
                 {"message", c.message}};
     put_spread(c, out);
+    const DofSigma scattered = scattered_sigma(c);
+    out["sigma_scattered"] = sigma_json(scattered.xyz_mm, scattered.abc_deg);
     return out;
 }
 
 namespace {
+std::string sigma_line(const char* name, const Eigen::Vector3d& xyz, const Eigen::Vector3d& abc) {
+    return fmt::format("{}  X {:.3f}  Y {:.3f}  Z {:.3f} mm   A {:.4f}  B {:.4f}  C {:.4f} deg\n", name,
+                       xyz.x(), xyz.y(), xyz.z(), abc.x(), abc.y(), abc.z());
+}
+
 // The sum, and its parts where something repeats.
 template <class T>
 std::string sigma_text(const T& r) {
-    const auto line = [](const char* name, const Eigen::Vector3d& xyz, const Eigen::Vector3d& abc) {
-        return fmt::format("{}  X {:.3f}  Y {:.3f}  Z {:.3f} mm   A {:.4f}  B {:.4f}  C {:.4f} deg\n", name,
-                           xyz.x(), xyz.y(), xyz.z(), abc.x(), abc.y(), abc.z());
-    };
-    std::string text = line("sigma", r.sigma_xyz_mm, r.sigma_abc_deg);
+    std::string text = sigma_line("sigma", r.sigma_xyz_mm, r.sigma_abc_deg);
     if (!r.covariance_systematic.isZero(0)) {
-        text += line("  random    ", r.sigma_random.xyz_mm, r.sigma_random.abc_deg);
-        text += line("  systematic", r.sigma_systematic.xyz_mm, r.sigma_systematic.abc_deg);
+        text += sigma_line("  random    ", r.sigma_random.xyz_mm, r.sigma_random.abc_deg);
+        text += sigma_line("  systematic", r.sigma_systematic.xyz_mm, r.sigma_systematic.abc_deg);
     }
     return text;
 }
@@ -97,6 +112,10 @@ std::string correction_text(const RegionCorrection& c) {
     if (c.status == CorrectionStatus::under_determined) return text;
     text += "D      " + pose_text(c.displacement.workobject_from_movedworkobject) + "\n";
     text += sigma_text(c);
+    if (!c.consistent) {
+        const DofSigma scattered = scattered_sigma(c);
+        text += sigma_line("  scattered ", scattered.xyz_mm, scattered.abc_deg);
+    }
     text += fmt::format("rms {:.4f} mm, redundancy {}\n", c.rms_mm, c.redundancy);
     for (const SpotResidual& s : c.spots)
         text += fmt::format("  {:<12} residual {:8.4f} {:8.4f} {:8.4f} mm{}\n", s.id, s.residual_mm.x(),
@@ -202,6 +221,8 @@ json alignment_json(const AlignmentResult& a) {
             {"expected_error_sigma_mm", a.expected_error_sigma_mm},  // null: a direction is not seen
             {"shape_change_mm", a.shape_change_mm},
             {"cure", a.cure},
+            {"cure_about_z_deg", a.cure_about_z_deg},  // the sensor's own Z first
+            {"cure_about_x_deg", a.cure_about_x_deg},  // then about its turned X
             {"offsets", offsets}};
 }
 

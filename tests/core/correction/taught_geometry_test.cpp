@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/correction/correction.h"
+#include "core/correction/forecast.h"
 #include "core/geometry/decompositions.h"
 #include "tests/core/correction/doors.h"
 #include "tests/core/english.h"
@@ -98,6 +99,59 @@ TEST(TaughtGeometry, MiddlesOfAHexagonsSidesDoNotTellTheTurn) {
     }
 }
 
+struct NearRim {
+    int ok = 0, refused = 0, trials = 0;
+    double largest = 0, nees = 0;  // of the turn, in stated sigmas; of the whole
+    double least_share = 1;        // of the turn's sigma as taught that is stated
+};
+
+// Straight edges about a degree off the tangents: the turn shows, if weakly. `grown` is nothing that the model knows.
+NearRim near_rim(unsigned seed, double off_rad, double grown, double mm, double deg) {
+    Rng rng(seed);
+    std::normal_distribution<double> normal;
+    NearRim out;
+    for (; out.trials < 150; ++out.trials) {
+        std::vector<SpotObservation> rim;
+        for (int n = 0; n < 8; ++n)
+            rim.push_back(at_rim(fmt::format("S{}", n + 1), kPi * n / 4, 300, off_rad * normal(rng), 0.02));
+        const Pose d = about_centre(mm * gaussian(rng), deg * gaussian(rng));
+        measure(rim, d);
+        add_noise_of_own(rim, rng);
+        for (SpotObservation& s : rim) {
+            const Eigen::Vector3d outward = (s.workobject_from_sensor.translation() - kCentre).normalized();
+            s.measured_mm +=
+                grown * (s.workobject_from_sensor.linear().transpose() * outward).cwiseProduct(s.weights);
+        }
+        const RegionCorrection r = *solve_region(rim, {});
+        out.refused += r.status == CorrectionStatus::under_determined;
+        if (r.status != CorrectionStatus::ok || !r.consistent) continue;
+        ++out.ok;
+        const Vector6 e = difference(d, r.displacement.workobject_from_movedworkobject);
+        const double off = std::abs(e[5]) / std::sqrt(r.covariance(5, 5));
+        out.largest = std::max(out.largest, off);
+        const double as_taught = predicted_covariance(rim, {})->sum(5, 5);
+        out.least_share = std::min(out.least_share, std::sqrt(r.covariance(5, 5) / as_taught));
+        const Vector6 scale = r.covariance.diagonal().cwiseSqrt(), u = e.cwiseQuotient(scale);
+        const Matrix6 correlation =
+            scale.cwiseInverse().asDiagonal() * r.covariance * scale.cwiseInverse().asDiagonal();
+        out.nees += u.dot(Vector6(solve_symmetric(correlation, u)));
+    }
+    return out;
+}
+
+TEST(TaughtGeometry, AWeakTurnIsNoSurerThanAsTaught) {
+    const NearRim grown = near_rim(33, 0.01, 0.1, 1, 0.15);
+    EXPECT_GT(grown.ok, 0);
+    EXPECT_GT(grown.least_share, 0.4) << grown.ok << " ok, largest " << grown.largest;
+    const NearRim honest = near_rim(34, 0.02, 0, 1, 0.15), far = near_rim(35, 0.02, 0, 5, 1);
+    for (const NearRim& r : {honest, far}) {
+        EXPECT_GE(r.ok, 140) << r.refused << " refused";
+        EXPECT_LT(r.largest, 6);
+        EXPECT_GT(r.nees / r.ok, 6 * 0.8);
+        EXPECT_LT(r.nees / r.ok, 6 * 1.15);
+    }
+}
+
 TEST(TaughtGeometry, LargeTurnsOfWellObservedDoorsAreSolved) {
     Rng rng(36);
     for (const auto& [mm, deg] : {std::pair{15.0, 3.0}, {5.0, 25.0}}) {
@@ -138,6 +192,44 @@ TEST(TaughtGeometry, WhatIsLeftWithoutAWrongSpotIsJudgedAsTaughtToo) {
         const RegionCorrection r = *solve_region(rim, {});
         EXPECT_TRUE(r.status != CorrectionStatus::ok || !r.consistent || r.spots.back().used) << r.message;
     }
+}
+
+TEST(TaughtGeometry, OneMeasureUnderTwoIdsIsRefused) {
+    Rng rng(38);
+    std::vector<SpotObservation> spots = door(rng, 8);
+    measure(spots, random_displacement(rng, 10, 1, {0, 0, 0}));
+    add_noise_of_own(spots, rng);
+    const auto with = [&](auto&& change) {
+        std::vector<SpotObservation> more = spots;
+        more.push_back(spots[2]);
+        more.back().id = "again";
+        change(more);
+        const auto r = solve_region(more, {});
+        return r ? std::string(to_string(r->status)) : r.error().sentence();
+    };
+    EXPECT_THAT(with([](auto&) {}), HasSubstr("\"S3\" and \"again\" are one measure"));
+    EXPECT_EQ(with([](auto& s) { s.back().measured_mm.x() += 0.03; }), "ok");  // measured twice
+    EXPECT_EQ(with([](auto& s) {                                               // one spot, axis by axis
+                  s[2].weights = {1, 0, 0};
+                  s.back().weights = {0, 0, 1};
+              }),
+              "ok");
+    EXPECT_TRUE(plan_region(spots, {}).has_value());
+    // Many spots take the other way.
+    const auto many = [&](std::vector<SpotObservation>& s) {
+        const std::vector<SpotObservation> further = door(rng, 300);
+        for (const SpotObservation& one : further) {
+            s.push_back(one);
+            s.back().id += " more";
+            s.back().measured_mm = one.reference_mm;
+        }
+    };
+    EXPECT_THAT(with(many), HasSubstr("are one measure"));
+    EXPECT_EQ(with([&](auto& s) {
+                  s.pop_back();
+                  many(s);
+              }).find("one measure"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <set>
@@ -282,7 +283,9 @@ Expected<Answer> correct(const std::string& file) {
     answer.json = correction_json(result);
     answer.text = correction_text(result);
     tell_contours(job, answer);
-    answer.exit_code = result.status == CorrectionStatus::ok ? kExitOk : kExitVerdict;
+    // As the gate judges it: solved, but the spots say no.
+    if (!result.consistent) fmt::print(stderr, "seamwright: {}\n", result.message.english());
+    answer.exit_code = result.status == CorrectionStatus::ok && result.consistent ? kExitOk : kExitVerdict;
     return answer;
 }
 
@@ -319,7 +322,9 @@ void add_correct(CommandLine& line) {
     CLI::App* command = line.add(
         "correct",
         "Displacement of the part from a region's measured spots.\n"
-        "The answer's \"displacement\" is D: the taught frame times D follows the part.",
+        "The answer's \"displacement\" is D: the taught frame times D follows the part. Exit 1 too where "
+        "the\n"
+        "spots contradict each other (\"consistent\": false): \"sigma_scattered\" is then what it is worth.",
         "seamwright correct job.json --json -\n"
         "  job.json: "
         "{\"spots\":[{\"id\":\"S1\",\"workobject_from_sensor\":{\"xyz\":[900,0,40],\"abc\":[0,0,180]},\n"

@@ -12,6 +12,8 @@ namespace {
 // The least that a point tells of an edge: a third of the pitch, though the outermost place is seen.
 constexpr double kSteepens = 1.2, kUnseenDrop = 1.2;
 constexpr double kSeenEdge = 1.0 / 3;
+constexpr double kSeldomLost = 0.01;  // share of lines; more seldom is left out by an ellipse of 95 %
+constexpr double kMostLost = 0.5;
 constexpr double kLeastSurface_mm = 0.1, kMostSurface_mm = 1000, kMostSkip_mm = 100;
 constexpr double kAcross = 0.2;  // cos of 78 degrees: a surface that stands across the other one
 
@@ -87,13 +89,26 @@ void GapFlushGauge::measure_edge(const GapPart& part, const Eigen::Vector2d& u, 
         if (std::abs(advance - plain) < by_noise) advance = plain;
     }
     const double spread = std::max(advance, kSeenEdge * plain);
-    side.edge = Eigen::Vector2d(part.x[outermost], part.z[outermost]) + (0.5 * advance + unseen) * u;
-    side.edge_variance = spread * spread / 12 + flank * flank + noise * noise;
+    // Where single lines are lost, so may be the last ones: mean square of their geometric number.
+    const double lost = outermost == 0 ? std::clamp(part.lost_share - kSeldomLost, 0.0, kMostLost) : 0;
+    const double lost_square = lost * (1 + lost) / ((1 - lost) * (1 - lost));
+    // The edge stands in the middle of a ramp that smoothing has drawn.
+    const double ramp = part.ramp ? (part.smoothed_lines - 1) * plain : 0;
+    // It has drawn a flank that is seen out over as many lines.
+    if (part.smoothed_lines > 1)
+        for (const std::size_t i : {outermost, outermost + 1})
+            if (i > 0 && i < part.z.size())
+                flank = std::max(flank,
+                                 0.5 * part.smoothed_lines * std::abs((part.z[i] - part.z[i - 1]) * u.y()));
+    side.edge = Eigen::Vector2d(part.x[outermost], part.z[outermost]) + (0.5 * (advance + ramp) + unseen) * u;
+    side.edge_variance = (spread * spread + ramp * ramp) / 12 + lost_square * plain * plain +
+                         std::pow(0.5 * part.unsure_lines * plain, 2) + flank * flank + noise * noise;
 }
 
 GapFlush GapFlushGauge::measure(const Profile& profile) {
     GapFlush result;
-    switch (sides_.find(profile, settings_.window, std::max(settings_.minimum_points, 4))) {
+    switch (sides_.find(profile, settings_.window, std::max(settings_.minimum_points, 4),
+                        settings_.edge_skip_mm + settings_.surface_mm)) {
         case GapSides::Found::no_points:
             result.status = GapFlushStatus::no_points;
             result.message = "no surface in the window";
@@ -101,6 +116,12 @@ GapFlush GapFlushGauge::measure(const Profile& profile) {
         case GapSides::Found::one_surface:
         case GapSides::Found::unbroken:
             result.message = "only one surface in the window: the contour is not broken by a gap";
+            return result;
+        case GapSides::Found::ambiguous:
+            result.status = GapFlushStatus::ill_conditioned;
+            result.message =
+                "which surface is a panel and which the ground in the gap cannot be told: show more of both "
+                "panels, or narrow the window to them";
             return result;
         case GapSides::Found::both:
             break;

@@ -20,6 +20,11 @@
 // Noise model: across each surface, from each line's residuals, their likeness and the profile's noise
 // (contour_noise.h); an edge is spread evenly over that advance a along u, at least over a third of the pitch (variance
 // a^2 / 12 each; a sensor's noise is in z and moves it by its part along u as well), and known to a point's noise across.
+// Where a share of a surface's lines is lost, the last ones may be: q (1 + q) / (1 - q)^2 pitches^2 more, q the share
+// beyond 0.01, which an ellipse of 95 % leaves out.
+// Behind the edge a sensor that means m lines has drawn the step over m - 1 of them: the edge is
+// their middle, with (m - 1)^2 / 12 pitches^2 more; a flank that is seen counts m times. Where nothing is known of its
+// smoothing, and ground is seen: half of the steep lines beside the edge.
 // Covariance of (gap, flush) in mm^2.
 
 #include <Eigen/Core>
@@ -38,7 +43,7 @@ enum class GapFlushStatus {
     ok,
     no_points,       // fewer usable points than two surfaces need
     not_found,       // no two sides: the contour is not broken
-    ill_conditioned  // a surface line is too short or not straight
+    ill_conditioned  // a surface line is too short or not straight, or may be the gap's ground
 };
 std::string_view to_string(GapFlushStatus status);
 

@@ -8,21 +8,199 @@
 namespace seamwright {
 namespace {
 
-constexpr double kHole = 1.8;        // spacings along x: a line without return lies in between
-constexpr double kHoleInside = 2.5;  // within a piece, where single returns may be missing
-constexpr double kRimEnd_mm = 3;     // of a piece, that may belong to the other part
-constexpr double kNoiseGate = 4.2;   // sigma
-constexpr double kFlattens = 0.6;    // of the slope before
-constexpr double kMostDrop = 1.2;    // of what a round rim drops in its last line
-constexpr int kSparks = 2;           // points passed over
-constexpr double kMostLines = 6;     // without return, within a rim
-constexpr double kFace_mm = 1;       // from a surface to the first point on its cut face, per line
-constexpr double kSlopeNoise = 3;    // sigma in the height over which a slope is taken
+constexpr double kOffLines = 0.25;      // spacings that a point stands off the even lines of one sensor
+constexpr double kInterleaved = 0.02;   // of the points
+constexpr double kHole = 1.8;           // spacings along x: a line without return lies in between
+constexpr double kHoleInside = 2.5;     // within the end of a piece
+constexpr double kGoesOnSteeper = 0.6;  // a rim behind single missing returns
+constexpr int kHoleLines = 6;           // without return, within a piece
+constexpr double kRimEnd_mm = 3;        // of a piece, that may belong to the other part
+constexpr double kNoiseGate = 4.2;      // sigma
+constexpr double kFlattens = 0.6;       // of the slope before
+constexpr double kMostDrop = 1.2;       // of what a round rim drops in its last line
+constexpr int kSparks = 2;              // points passed over
+constexpr double kMostLines = 6;        // without return, within a rim
+constexpr double kFace_mm = 1;          // from a surface to the first point on its cut face, per line
+constexpr double kSteep = 2.1;          // slope: 65 degrees; no panel is seen so steep
+constexpr double kSteepSmoothed = 1.4;  // of a sensor that smooths, or may: a ramp is flatter than the step
+constexpr double kSteepNoise = 6;       // sigma
+constexpr int kMostSteep = 40;          // points over which steepness is judged
+constexpr double kGroundSlope = 1;      // at most
+constexpr int kLeastGround = 3;         // points
+constexpr int kEndPoints = 12, kFewEndPoints = 4;
+constexpr double kGoesOn = 5;       // sigma
+constexpr double kSmooths = 1.5;    // lines that share their noise
+constexpr double kRampStep = 0.5;   // of the steepest: such a step belongs to the ramp
+constexpr double kByChance = 1e-3;  // holes of missing returns in a profile
+constexpr int kOfItsSize = 3;       // times the points of a smaller sheet: that one is none beside it
+constexpr int kOpen = 2;            // times the size, of a pair with a hole or ground in between
+constexpr double kSlopeNoise = 3;   // sigma in the height over which a slope is taken
 
 }  // namespace
 
-// The two pieces with most points; of a single one what lies before and behind its widest hole.
-bool GapSides::two_cores(int least, Core& before, Core& after) const {
+// A sensor sees its lines one after the other, evenly apart.
+bool GapSides::interleaved() const {
+    std::size_t neighbours = 0, off = 0;
+    for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
+        const double lines = std::abs(x_[i + 1] - x_[i]) / pitch_;
+        if (lines > kHole) continue;
+        ++neighbours;
+        off += std::abs(lines - 1) > kOffLines;
+    }
+    return static_cast<double>(off) > kInterleaved * static_cast<double>(neighbours);
+}
+
+bool GapSides::smooths() const {
+    return !interleaved_ && noise_.apart() > kSmooths;
+}
+
+// Lines without return between two points.
+int GapSides::missing(int i, int j) const {
+    return static_cast<int>(std::lround(std::abs(x_[j] - x_[i]) / pitch_)) - std::abs(j - i);
+}
+
+// So many lines in a row without return, or with a spark, are no chance: of n points with the share q of such ones behind
+// them n q^k have k.
+int GapSides::chance_lines() const {
+    double runs = 0;
+    const int n = static_cast<int>(raw_.size());
+    for (int i = 0; i + 1 < n; ++i) runs += lost(i, i + 1) > 0;
+    const double share = (runs + 0.5) / n;
+    return share < 1 ? static_cast<int>(std::ceil(std::log(kByChance / n) / std::log(share))) : n;
+}
+
+// Lines between two points of points_.
+int GapSides::lost(int a, int b) const {
+    return static_cast<int>(std::lround(std::abs(points_.x[b] - points_.x[a]) / pitch_)) - 1;
+}
+
+// Nothing is known between two points of points_, or what the filter left out lies lower than both: a narrow gap's ground.
+bool GapSides::is_hole(int a, int b) const {
+    if (missing(raw_[a], raw_[b]) >= hole_lines_) return true;
+    if (lost(a, b) < chance_lines_) return false;
+    const double low = std::min(points_.z[a], points_.z[b]) - pitch_ - kNoiseGate * noise_.point_mm;
+    return std::any_of(z_.begin() + raw_[a] + 1, z_.begin() + raw_[b], [&](double z) { return z < low; });
+}
+
+// Of the lines of two surfaces, without a return or with a spark: that many edges were seen farther inwards.
+double GapSides::lost_share(const Core& before, const Core& after) const {
+    int lost = 0, lines = 1;
+    for (const Core& core : {before, after}) {
+        int last = -1;
+        for (const int i : raw_) {
+            if (i < core.first || i > core.last) continue;
+            if (last >= 0) {
+                ++lines;
+                lost += std::abs(x_[i] - x_[last]) > kHole * pitch_;
+            }
+            last = i;
+        }
+    }
+    return static_cast<double>(lost) / lines;
+}
+
+// Mean place and slope of the points at an end of a sheet.
+GapSides::End GapSides::end_of(const Sheet& sheet, bool last) const {
+    End e;
+    const int count = std::min(kEndPoints, sheet.last - sheet.first + 1);
+    const int from = last ? sheet.last - count + 1 : sheet.first;
+    for (int i = from; i < from + count; ++i) e.x += points_.x[i] / count, e.z += points_.z[i] / count;
+    double xx = 0, xz = 0;
+    for (int i = from; i < from + count; ++i) {
+        xx += (points_.x[i] - e.x) * (points_.x[i] - e.x);
+        xz += (points_.x[i] - e.x) * (points_.z[i] - e.z);
+    }
+    e.slope = xx > 0 ? xz / xx : 0;
+    e.sigma = xx > 0 ? std::sqrt(1.0 / count + 1 / xx * std::pow(count * pitch_, 2)) : 1;
+    return e;
+}
+
+// Either one lies where the other points to: nothing but noise or a few missing returns divides them.
+bool GapSides::goes_on(const Sheet& a, const Sheet& b) const {
+    if (is_hole(a.last, b.first)) return false;
+    const auto met = [&](const Sheet& end, const Sheet& begin) {
+        const End before = end_of(end, true), after = end_of(begin, false);
+        const double dx = after.x - before.x, dz = after.z - before.z;
+        const double sigma =
+            noise_.point_mm * std::sqrt(noise_.apart()) * std::hypot(before.sigma, after.sigma);
+        const double most = kGoesOn * sigma + pitch_;
+        return std::abs(dz - before.slope * dx) < most && std::abs(dz - after.slope * dx) < most;
+    };
+    // A rim is bent over many points, and straight over the few that meet.
+    Sheet end = a, begin = b;
+    end.first = std::max(a.first, a.last - kFewEndPoints + 1);
+    begin.last = std::min(b.last, b.first + kFewEndPoints - 1);
+    return met(a, b) || met(end, begin);
+}
+
+// The filter joins a panel with the ground in the gap over a face that is seen, and over the ramp that a sensor's
+// smoothing makes of a step. So its pieces are divided where they are steep, and at holes.
+void GapSides::divide() {
+    sheets_.clear();
+    const double noise = noise_.point_mm, limit = smooths() || !(noise_.points > 0) ? kSteepSmoothed : kSteep;
+    const int w = std::clamp(
+        static_cast<int>(std::ceil(kSteepNoise * std::sqrt(2.0) * noise / (limit * pitch_))), 1, kMostSteep);
+    const auto steep = [&](int i, int j) {
+        const double least = std::max(std::abs(points_.x[j] - points_.x[i]), w * pitch_);
+        return std::abs(points_.z[j] - points_.z[i]) > limit * least;
+    };
+    const auto divide_run = [&](int first, int end) {
+        int begin = first, steep_until = -1;
+        const auto close = [&](int behind) {
+            if (behind - begin > 1) sheets_.push_back({begin, behind - 1, behind - begin, first, end - 1});
+        };
+        for (int i = first; i + 1 < end; ++i) {
+            // The shortest way that is steep: what is level beside a step belongs to its sheet.
+            const int most = std::min(i + w, end - 1);
+            int j = i + 1;
+            while (j <= most && !steep(i, j)) ++j;
+            bool shorter = false;
+            for (int k = i + 1; k < j && j <= most; ++k) shorter = shorter || steep(k, j);
+            if (j <= most && !shorter) steep_until = j;
+            if (i >= steep_until) continue;
+            close(i + 1);
+            begin = i + 1;
+        }
+        close(end);
+    };
+    for (const auto& piece : points_.pieces) {
+        int first = piece.first;
+        for (int i = first; i < piece.first + piece.count; ++i) {
+            if (i + 1 < piece.first + piece.count && !is_hole(i, i + 1)) continue;
+            divide_run(first, i + 1);
+            first = i + 1;
+        }
+    }
+    std::size_t kept = 0;
+    for (std::size_t k = 1; k < sheets_.size(); ++k) {
+        Sheet& open = sheets_[kept];
+        if (goes_on(open, sheets_[k])) {
+            open.last = sheets_[k].last;
+            open.count += sheets_[k].count;
+            open.piece_last = sheets_[k].piece_last;
+        } else {
+            sheets_[++kept] = sheets_[k];
+        }
+    }
+    sheets_.resize(std::min(sheets_.size(), kept + 1));
+    std::erase_if(sheets_, [&](const Sheet& sheet) { return sheet.count < std::max(kLeastGround, w); });
+}
+
+// Ends of neighbouring sheets: b's lies deeper than a's, and b is no piece of a rim that falls.
+bool GapSides::lower(const Sheet& b, const Sheet& a) const {
+    const bool behind = b.first > a.first;
+    const auto level = [&](const Sheet& sheet, bool last) {
+        const int i = last ? sheet.last : sheet.first, step = last ? -1 : 1;
+        return (points_.z[i] + points_.z[i + step]) / 2;
+    };
+    return level(b, !behind) < level(a, behind) - pitch_ - kNoiseGate * noise_.point_mm &&
+           std::abs(points_.z[b.last] - points_.z[b.first]) <
+               kGroundSlope * std::abs(points_.x[b.last] - points_.x[b.first]);
+}
+
+// Of interleaved lines neither steepness nor a missing return can be told: the two pieces with most points; of a single
+// one, as two sheets in flush with nothing seen between them are to the filter, what lies before and behind its widest hole.
+GapSides::Found GapSides::two_pieces(int least, Core& before, Core& after) const {
     const FeaturePoints::Piece *first = nullptr, *second = nullptr;
     for (const auto& piece : points_.pieces) {
         if (piece.count < least) continue;
@@ -33,18 +211,14 @@ bool GapSides::two_cores(int least, Core& before, Core& after) const {
             second = &piece;
         }
     }
-    if (!first) return false;
-    const auto core = [&](int begin, int count) {
-        return Core{raw_[static_cast<std::size_t>(begin)], raw_[static_cast<std::size_t>(begin + count - 1)]};
-    };
+    if (!first) return Found::no_points;
+    const auto core = [&](int begin, int count) { return Core{raw_[begin], raw_[begin + count - 1]}; };
     if (second) {
         if (second->first < first->first) std::swap(first, second);
         before = core(first->first, first->count);
         after = core(second->first, second->count);
-        return true;
+        return Found::both;
     }
-    // Two sheets in flush with nothing seen between them are one contour to the filter: the second goes on
-    // where the first points to.
     const int end = first->first + first->count;
     int behind = 0;
     double widest = 0;
@@ -54,19 +228,96 @@ bool GapSides::two_cores(int least, Core& before, Core& after) const {
         widest = std::hypot(dx, dz);
         behind = i;
     }
-    if (behind == 0) return false;
+    if (behind == 0) return Found::one_surface;
     before = core(first->first, behind - first->first);
     after = core(behind, end - behind);
-    return true;
+    return Found::both;
+}
+
+// The two largest sheets with nothing as high as they are, and of their size, in between.
+GapSides::Found GapSides::two_cores(int least, double panel_mm, Core& before, Core& after) {
+    const auto n = sheets_.size();
+    std::size_t a = n, b = n;
+    int most = 0, sum = 0;
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = i + 1; j < n; ++j) {
+            const int smaller = std::min(sheets_[i].count, sheets_[j].count),
+                      both = sheets_[i].count + sheets_[j].count;
+            bool free = smaller >= least;
+            bool open = j == i + 1 && is_hole(sheets_[i].last, sheets_[j].first);
+            for (std::size_t k = i + 1; k < j && free; ++k) {
+                const bool ground = lower(sheets_[k], sheets_[i]) && lower(sheets_[k], sheets_[j]);
+                free = ground || kOfItsSize * sheets_[k].count < smaller;
+                open = open || ground;
+            }
+            // A gap rather than a step, which a panel may have as well.
+            const int weight = (open ? kOpen : 1) * smaller;
+            if (!free || weight < most || (weight == most && both <= sum)) continue;
+            a = i, b = j, most = weight, sum = both;
+        }
+    if (b == n) {
+        const bool any = std::any_of(sheets_.begin(), sheets_.end(),
+                                     [&](const Sheet& sheet) { return sheet.count >= least; });
+        return any ? Found::one_surface : Found::no_points;
+    }
+    // A short one with a higher one of its size on its other side as well may be the ground of a gap.
+    const auto ground = [&](std::size_t k, std::size_t panel) {
+        const Sheet& sheet = sheets_[k];
+        if (!lower(sheet, sheets_[panel]) ||
+            std::abs(points_.x[sheet.last] - points_.x[sheet.first]) > 2 * panel_mm)
+            return false;
+        for (std::size_t other = 0; other < n; ++other)
+            if ((other < k) != (panel < k) && other != k &&
+                kOfItsSize * sheets_[other].count >= sheet.count && lower(sheet, sheets_[other]))
+                return true;
+        return false;
+    };
+    if (ground(a, b) || ground(b, a)) return Found::ambiguous;
+    before = {raw_[sheets_[a].first], raw_[sheets_[a].last]};
+    after = {raw_[sheets_[b].first], raw_[sheets_[b].last]};
+    for (std::size_t k = a + 1; k < b; ++k) {
+        if (!lower(sheets_[k], sheets_[a]) || !lower(sheets_[k], sheets_[b])) continue;
+        // Up to the panels, as far as it is the ground's line.
+        const auto until = [&](int i, int step, int stop) {
+            const End end = end_of(sheets_[k], step > 0);
+            while (i + step != stop && std::abs(z_[i + step] - end.z - end.slope * (x_[i + step] - end.x)) <
+                                           kNoiseGate * noise_.point_mm)
+                i += step;
+            return i;
+        };
+        if (ground_first_ < 0) ground_first_ = until(raw_[sheets_[k].first], -1, before.last);
+        ground_last_ = until(raw_[sheets_[k].last], 1, after.first);
+    }
+    // A rim is steep as well: where its piece reaches neither the ground nor the other panel it is the panel's.
+    if (smooths()) return Found::both;
+    if (const int end = raw_[sheets_[a].piece_last]; end < (ground_first_ < 0 ? after.first : ground_first_))
+        before.last = end;
+    if (const int end = raw_[sheets_[b].piece_first]; end > (ground_last_ < 0 ? before.last : ground_last_))
+        after.first = end;
+    return Found::both;
 }
 
 // The raw point behind which the first part can have no more points: the widest hole between the surfaces or
 // within the end of one of them, for the filter lets a surface go on with the other one's rim. -1: the contour goes on from one to the other.
 int GapSides::break_between(const Core& before, const Core& after) const {
-    const auto widest = [&](int from, int to, double least) {
+    const double noise = std::max(noise_of(before.first, before.last), noise_of(after.first, after.last));
+    // Where single returns may be missing the contour goes on behind them, seen from either side.
+    const auto is_break = [&](int i) {
+        if (interleaved_) return true;
+        const int lines = missing(i, i + 1) + 1;
+        if (lines > chance_lines_) return true;
+        const double rise = z_[i + 1] - z_[i], width = pitch_ * lines;
+        const auto misses = [&](int a, int b) {
+            const double slope = (z_[b] - z_[a]) / (pitch_ * (1 + missing(a, b)));
+            return std::abs(rise - slope * width) > (1 + kGoesOnSteeper * std::abs(slope)) * width +
+                                                        kNoiseGate * std::sqrt(2.0) * noise * (1 + lines);
+        };
+        return i > 0 && i + 2 < static_cast<int>(x_.size()) && (misses(i - 1, i) || misses(i + 1, i + 2));
+    };
+    const auto widest = [&](int from, int to, double least, const auto& counts) {
         int at = -1;
         for (int i = from; i < to; ++i)
-            if (const double dx = std::abs(x_[i + 1] - x_[i]); dx > least) {
+            if (const double dx = std::abs(x_[i + 1] - x_[i]); dx > least && counts(i)) {
                 least = dx;
                 at = i;
             }
@@ -75,9 +326,9 @@ int GapSides::break_between(const Core& before, const Core& after) const {
     int from = before.last, to = after.first;
     while (from > before.first && std::abs(x_[from] - x_[before.last]) < kRimEnd_mm) --from;
     while (to < after.last && std::abs(x_[to] - x_[after.first]) < kRimEnd_mm) ++to;
-    const int between = widest(before.last, after.first, kHole * pitch_);
+    const int between = widest(before.last, after.first, kHole * pitch_, [](int) { return true; });
     const double least = between < 0 ? 0 : std::abs(x_[between + 1] - x_[between]);
-    if (const int at = widest(from, to, std::max(least, kHoleInside * pitch_)); at >= 0) return at;
+    if (const int at = widest(from, to, std::max(least, kHoleInside * pitch_), is_break); at >= 0) return at;
     if (between >= 0) return between;
     // No hole: a jump, or ground that is seen all the way.
     double highest = 0;
@@ -87,7 +338,6 @@ int GapSides::break_between(const Core& before, const Core& after) const {
             highest = dz;
             at = i;
         }
-    const double noise = std::max(noise_of(before.first, before.last), noise_of(after.first, after.last));
     return highest > 2 * pitch_ + kNoiseGate * std::sqrt(2.0) * noise ? at : -1;
 }
 
@@ -100,8 +350,9 @@ double GapSides::noise_of(int first, int last) const {
     return kMadToSigma * *middle / std::sqrt(6.0);
 }
 
-// The last point of the part that goes on from `from`; `stop` is no more of it.
-int GapSides::walked(int from, int step, int stop, double noise) const {
+// The last point of the part that goes on from `from`; `stop` is no more of it. Of a sensor that smooths the last points
+// stand on the ramp that it makes of the step behind the edge (or of a face): they are given back, as many as it makes.
+int GapSides::walked(int from, int step, int stop, double noise, GapPart& part) const {
     const int w = std::clamp(static_cast<int>(std::ceil(kSlopeNoise * noise / pitch_)), 1, 40);
     const double steeper = kMostDrop * w / (std::sqrt(w + 1.0) - 1);
     trail_.clear();
@@ -125,7 +376,7 @@ int GapSides::walked(int from, int step, int stop, double noise) const {
         const double most = falls ? flat + gate + 0.5 * pitch_ * n : steep + tolerance;
         const auto cut_face = [&] {
             const int next = i + step;
-            if (!(std::abs(dz) <= kFace_mm * n) || (next - stop) * step >= 0) return false;
+            if (smooths() || !(std::abs(dz) <= kFace_mm * n) || (next - stop) * step >= 0) return false;
             const double on = (z_[next] - z_[i]) / lines(i, next);
             return on * dz > 0 && std::abs(on) > pitch_ + gate;
         };
@@ -140,10 +391,37 @@ int GapSides::walked(int from, int step, int stop, double noise) const {
         if (++sparks > kSparks) break;
     }
     if (flattens && trail_.back() != from && entered > pitch_ + gate) trail_.pop_back();
+    const int edge = trail_.back(), next = edge + step;
+    const bool ground = ground_first_ >= 0;
+    const bool goes_on =
+        (next == stop ? ground : (stop - next) * step > 0) && missing(edge, next) < hole_lines_;
+    const auto steep = [&](int i, int j, double least) {
+        return std::abs(z_[j] - z_[i]) >= least * lines(i, j);
+    };
+    part.unsure_lines = 0;
+    part.ramp = smooths() && goes_on;
+    if (!(noise_.points > 0) && ground && goes_on) {
+        int first = edge, last = edge;
+        while (first != from && steep(first, first - step, kSteep * pitch_)) first -= step;
+        while (last != stop && steep(last, last + step, kSteep * pitch_)) last += step;
+        part.unsure_lines = std::max(0.0, lines(first, last) - 1);
+    }
+    if (!part.ramp) return edge;
+    const int ramp_lines = static_cast<int>(std::lround(noise_.apart()));
+    double steepest = 0;
+    for (int i = edge, k = 0; k < ramp_lines && i != stop; i += step, ++k)
+        steepest = std::max(steepest, std::abs(z_[i + step] - z_[i]) / lines(i, i + step));
+    const double least = std::max(kSteep * pitch_, kRampStep * steepest);
+    for (int k = 1; k < ramp_lines && trail_.size() > 1 && trail_.back() != from; ++k) {
+        const int last = trail_.back(), inner = trail_[trail_.size() - 2];
+        if (!steep(inner, last, least)) break;
+        trail_.pop_back();
+    }
     return trail_.back();
 }
 
-GapSides::Found GapSides::find(const Profile& profile, const FeatureWindow& window, int least) {
+GapSides::Found GapSides::find(const Profile& profile, const FeatureWindow& window, int least,
+                               double panel_mm) {
     points_.gather(profile, window);
     x_.clear();
     z_.clear();
@@ -156,38 +434,42 @@ GapSides::Found GapSides::find(const Profile& profile, const FeatureWindow& wind
         x_.push_back(x);
         z_.push_back(z);
     }
+    noise_ = points_.noise();
+    pitch_ = points_.pitch.along_x;
+    if (x_.size() < 2 || !(pitch_ > 0)) return Found::no_points;
+    interleaved_ = interleaved();
+    ground_first_ = ground_last_ = -1;
     Core before{}, after{};
-    if (!two_cores(least, before, after))
-        return std::any_of(points_.pieces.begin(), points_.pieces.end(),
-                           [&](const auto& p) { return p.count >= least; })
-                   ? Found::one_surface
-                   : Found::no_points;
-    scratch_.clear();
-    for (const Core& c : {before, after})
-        for (int i = c.first; i < c.last; ++i) scratch_.push_back(std::abs(x_[i + 1] - x_[i]));
-    const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
-    std::nth_element(scratch_.begin(), middle, scratch_.end());
-    pitch_ = *middle;
-    const int cut = break_between(before, after);
-    if (cut < 0 || !(pitch_ > 0)) return Found::unbroken;
-    const int after_end = std::max(after.first, cut + 1);
+    if (!interleaved_) {
+        chance_lines_ = chance_lines();
+        hole_lines_ = std::max(kHoleLines, chance_lines_);
+        divide();
+    }
+    const Found found =
+        interleaved_ ? two_pieces(least, before, after) : two_cores(least, panel_mm, before, after);
+    if (found != Found::both) return found;
+    const bool ground = ground_first_ >= 0;
+    const int cut = ground ? ground_first_ - 1 : break_between(before, after);
+    if (cut < 0) return Found::unbroken;
+    const int after_end = std::max(after.first, cut + 1), after_stop = ground ? ground_last_ : cut;
     before.last = std::min(before.last, cut);
     if (std::min(before.last - before.first, after.last - after_end) + 1 < least) return Found::unbroken;
     const double noise_before = noise_of(before.first, before.last),
                  noise_after = noise_of(after_end, after.last);
-    const int last = walked(before.last, 1, cut + 1, noise_before);
-    const int first = walked(after_end, -1, cut, noise_after);
-    double mean_before = 0, mean_after = 0;
-    for (int i = before.first; i <= before.last; ++i) mean_before += x_[i] / (before.last - before.first + 1);
-    for (int i = after_end; i <= after.last; ++i) mean_after += x_[i] / (after.last - after_end + 1);
-    GapPart& part_before = parts_[mean_before < mean_after ? 0 : 1];
-    GapPart& part_after = parts_[mean_before < mean_after ? 1 : 0];
+    const bool left_first = x_[before.first] < x_[after.last];
+    GapPart& part_before = parts_[left_first ? 0 : 1];
+    GapPart& part_after = parts_[left_first ? 1 : 0];
     for (GapPart* part : {&part_before, &part_after}) {
         part->x.clear();
         part->z.clear();
     }
     part_before.noise_mm = noise_before;
     part_after.noise_mm = noise_after;
+    part_before.lost_share = part_after.lost_share =
+        interleaved_ ? 0 : lost_share(before, {after_end, after.last});
+    part_before.smoothed_lines = part_after.smoothed_lines = smooths() ? noise_.apart() : 1;
+    const int last = walked(before.last, 1, cut + 1, noise_before, part_before);
+    const int first = walked(after_end, -1, after_stop, noise_after, part_after);
     const auto take = [&](GapPart& part, int i) {
         part.x.push_back(x_[i]);
         part.z.push_back(z_[i]);

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "core/features/gap/gap_flush.h"
@@ -59,42 +61,71 @@ struct Tally {
     double error = 0, sigma = 0;
 };
 
-Tally measure(double radius_mm, double pitch_mm, double noise_mm, int trials, std::mt19937_64& engine) {
+struct Sensing {
+    double pitch_mm, noise_mm;
+    double missing = 0.01;  // share of the returns
+    int mean = 1;           // lines that the sensor means
+    double ground_mm = 0;   // depth at which the ground is seen in the gap; 0: it is dark
+};
+
+// What a sensor makes of it that means so many lines, of those with a return.
+void smooth(std::vector<double>& z, int lines) {
+    const std::vector<double> raw = z;
+    const int n = static_cast<int>(z.size()), half = lines / 2;
+    for (int i = 0; i < n; ++i) {
+        if (std::isnan(raw[i])) continue;
+        double sum = 0;
+        int count = 0;
+        for (int k = std::max(0, i - half); k <= std::min(n - 1, i + half); ++k)
+            if (!std::isnan(raw[k])) sum += raw[k], ++count;
+        z[i] = sum / count;
+    }
+}
+
+Tally measure(double radius_mm, const Sensing& sensing, int trials, std::mt19937_64& engine) {
+    const double pitch_mm = sensing.pitch_mm, noise_mm = sensing.noise_mm, ground_mm = sensing.ground_mm;
     std::uniform_real_distribution<double> uniform(0, 1);
     std::normal_distribution<double> normal;
     Tally tally;
     for (int trial = 0; trial < trials; ++trial) {
-        const double wanted = 3 * pitch_mm + 0.2 * std::pow(50, uniform(engine));
+        const double wanted =
+            ground_mm > 0 ? 2 + 4 * uniform(engine) : 3 * pitch_mm + 0.2 * std::pow(50, uniform(engine));
         const double tilt = 0.2 * (uniform(engine) - 0.5);
         Outline left = rim(radius_mm), right = rim(radius_mm);
         for (auto& p : right) p.x() = -p.x();
         turn(right, 0.1 * (uniform(engine) - 0.5));
         double nearest = 1e9;
         for (const auto& p : right) nearest = std::min(nearest, p.x());
-        const double flush = 6 * (uniform(engine) - 0.5);
+        const double flush = (ground_mm > 0 ? 2 : 6) * (uniform(engine) - 0.5);
         for (auto& p : right) p += Eigen::Vector2d(wanted - nearest, flush);
         turn(left, tilt);
         turn(right, tilt);
-        const GapScene scene{{left, right}};
+        GapScene scene{{left, right}};
+        if (ground_mm > 0) {
+            Outline ground{{-1, -ground_mm}, {wanted + 1, -ground_mm}};
+            turn(ground, tilt);
+            scene.sheets.push_back(ground);
+        }
         const Eigen::Vector2d u(std::cos(tilt), std::sin(tilt));
         double edge[2] = {-1e9, 1e9};
         // An outline is straight between its corners: the outermost place is a corner that is seen.
-        for (const Outline& o : scene.sheets)
+        for (const Outline& o : {left, right})
             for (const auto& corner : o)
                 for (const double x : {corner.x() - 1e-7, corner.x() + 1e-7}) {
                     int sheet = 0;
                     const double z = scene.height(x, sheet);
-                    if (!std::isfinite(z)) continue;
+                    if (!std::isfinite(z) || sheet > 1) continue;
                     const double along = u.dot(Eigen::Vector2d(x, z));
                     edge[sheet] = sheet == 0 ? std::max(edge[0], along) : std::min(edge[1], along);
                 }
         Profile p;
         for (double x = -14 + pitch_mm * uniform(engine); x < 14 + wanted; x += pitch_mm) {
             int sheet = 0;
-            const bool missing = uniform(engine) < 0.01;
+            const bool missing = uniform(engine) < sensing.missing;
             p.x_mm.push_back(x);
             p.z_mm.push_back(missing ? std::nan("") : scene.height(x, sheet) + noise_mm * normal(engine));
         }
+        smooth(p.z_mm, sensing.mean);
         EXPECT_TRUE(filter_profile(p, {}));
         GapFlushSettings settings;
         settings.surface_mm = 6;
@@ -118,7 +149,7 @@ TEST(GapWidth, IsAsSureAsItSaysOverPitchNoiseGapFlushAndRim) {
         Tally all;
         for (const double pitch : {0.02, 0.05, 0.1, 0.2, 0.3})
             for (const double noise : {0.01, 0.03, 0.1}) {
-                const Tally t = measure(radius, pitch, noise, 60, engine);
+                const Tally t = measure(radius, {pitch, noise}, 60, engine);
                 EXPECT_GE(t.ok, 0.7 * t.asked) << "radius " << radius << " pitch " << pitch << " " << noise;
                 EXPECT_LT(std::abs(t.error), 0.5 * t.sigma) << radius << " pitch " << pitch << " " << noise;
                 all.asked += t.asked;
@@ -133,6 +164,134 @@ TEST(GapWidth, IsAsSureAsItSaysOverPitchNoiseGapFlushAndRim) {
         EXPECT_LE(all.far, 0.005 * all.ok) << radius;
         EXPECT_LT(std::abs(all.error), 0.15 * all.sigma) << radius;
     }
+}
+
+// The ground is no panel, a missing return no edge, and the ramp that a smoothing sensor draws of the step is known.
+TEST(GapWidth, GroundThatIsSeenInTheGapIsNoPanel) {
+    std::mt19937_64 engine(32);
+    for (const double missing : {0.0, 0.05})
+        for (const int mean : {1, 3, 5}) {
+            Tally all;
+            for (const double radius : {0.0, 1.2})
+                for (const double depth : {3.0, 8.0})
+                    for (const double pitch : {0.02, 0.05, 0.1, 0.2}) {
+                        const Tally t = measure(radius, {pitch, pitch / 5, missing, mean, depth}, 15, engine);
+                        EXPECT_GE(t.ok, 0.9 * t.asked)
+                            << radius << " " << depth << " " << pitch << " " << mean;
+                        all.asked += t.asked;
+                        all.ok += t.ok;
+                        all.inside += t.inside;
+                        all.far += t.far;
+                    }
+            EXPECT_GE(all.ok, 0.98 * all.asked) << missing << " " << mean;
+            EXPECT_GE(double(all.inside) / all.ok, 0.88) << missing << " " << mean;
+            EXPECT_LE(all.far, 0.01 * all.ok) << missing << " " << mean;
+        }
+}
+
+// Without ground as well: a face that is seen is drawn out.
+TEST(GapWidth, IsAsSureAsItSaysOfASensorThatSmooths) {
+    std::mt19937_64 engine(33);
+    for (const int mean : {3, 5})
+        for (const double radius : {0.0, 0.5, 1.5}) {
+            Tally all;
+            for (const double pitch : {0.02, 0.05, 0.1}) {
+                const Tally t = measure(radius, {pitch, pitch / 5, 0.0, mean}, 60, engine);
+                all.ok += t.ok;
+                all.inside += t.inside;
+                all.far += t.far;
+            }
+            EXPECT_GE(all.ok, 170);
+            EXPECT_GE(double(all.inside) / all.ok, 0.83) << radius << " " << mean;
+            EXPECT_LE(all.far, 2) << radius << " " << mean;
+        }
+}
+
+// Panels of 15 and `right_mm` with a gap of 6 mm and ground 4 mm below between them; returns at 0.05 mm.
+Profile over_ground(double right_mm) {
+    Profile p;
+    for (int i = 0; i * 0.05 < 21 + right_mm; ++i) {
+        const double x = 0.05 * i - 15;
+        p.x_mm.push_back(x);
+        p.z_mm.push_back(x > 0 && x < 6 ? -4 : 0);
+    }
+    return p;
+}
+
+TEST(GapWidth, ReturnsThatAreMissingInAPanelAreNoEdge) {
+    Profile p = over_ground(12);
+    EXPECT_TRUE(filter_profile(p, {}));
+    const GapFlush whole = GapFlushGauge({}).measure(p);
+    ASSERT_EQ(whole.status, GapFlushStatus::ok) << whole.message;
+    EXPECT_NEAR(whole.gap_mm, 6, 0.051);
+    for (int place = 225; place < 298; place += 8) {
+        Profile holed = over_ground(12);
+        holed.z_mm[place] = holed.z_mm[place + 1] = holed.z_mm[place / 2] = std::nan("");
+        EXPECT_TRUE(filter_profile(holed, {}));
+        const GapFlush g = GapFlushGauge({}).measure(holed);
+        ASSERT_EQ(g.status, GapFlushStatus::ok) << g.message;
+        EXPECT_NEAR(g.gap_mm, whole.gap_mm, 1e-6) << place;
+    }
+}
+
+TEST(GapWidth, IsRefusedWhereTheGroundCannotBeToldFromAPanel) {
+    Profile p = over_ground(2.5);
+    EXPECT_TRUE(filter_profile(p, {}));
+    const GapFlush g = GapFlushGauge({}).measure(p);
+    EXPECT_EQ(g.status, GapFlushStatus::ill_conditioned) << g.gap_mm;
+    EXPECT_NE(std::string(g.message).find("ground"), std::string::npos) << g.message;
+}
+
+// A line may be lost right at the edge as well as elsewhere.
+TEST(GapWidth, IsAsSureAsItSaysWhereReturnsAreMissing) {
+    std::mt19937_64 engine(34);
+    for (const double missing : {0.05, 0.2}) {
+        Tally all;
+        for (const double radius : {0.0, 1.2})
+            for (const double pitch : {0.02, 0.05, 0.1}) {
+                const Tally t = measure(radius, {pitch, pitch / 5, missing}, 60, engine);
+                all.ok += t.ok;
+                all.inside += t.inside;
+                all.far += t.far;
+            }
+        EXPECT_GE(all.ok, 353) << missing;
+        EXPECT_GE(double(all.inside) / all.ok, 0.92) << missing;
+        EXPECT_LE(all.far, 3) << missing;
+    }
+}
+
+// Heads that look from either side see the faces of the gap; merged, the points of a face lie in order of x.
+TEST(GapWidth, FacesThatADoubleHeadSeesAreThePanels) {
+    std::mt19937_64 engine(35);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    std::normal_distribution<double> normal;
+    int ok = 0, within = 0;
+    for (int trial = 0; trial < 200; ++trial) {
+        const double gap = 2 + 6 * uniform(engine), flush = 3 * uniform(engine) - 1.5;
+        std::vector<Eigen::Vector2d> panel[2];
+        for (const int side : {0, 1}) {
+            for (double s = 0.05; s < 15; s += 0.05 + 0.02 * uniform(engine)) panel[side].emplace_back(s, 0);
+            for (double depth = 0.1; depth < 5; depth += 0.15) panel[side].emplace_back(0, -depth);
+            for (auto& p : panel[side]) {
+                p += 0.01 * Eigen::Vector2d(normal(engine), normal(engine));
+                p = side == 0 ? Eigen::Vector2d(-p.x(), p.y()) : Eigen::Vector2d(gap + p.x(), flush + p.y());
+            }
+            std::sort(panel[side].begin(), panel[side].end(),
+                      [](const auto& a, const auto& b) { return a.x() < b.x(); });
+        }
+        Profile p;
+        for (const int side : {0, 1})
+            for (const auto& point : panel[side]) {
+                p.x_mm.push_back(point.x());
+                p.z_mm.push_back(point.y());
+                p.segment.push_back(side);
+            }
+        const GapFlush g = GapFlushGauge({}).measure(p);
+        ok += g.status == GapFlushStatus::ok;
+        within += std::abs(g.gap_mm - gap) < 0.1 && std::abs(g.flush_mm - flush) < 0.05;
+    }
+    EXPECT_EQ(ok, 200);
+    EXPECT_GE(within, 196);
 }
 
 }  // namespace

@@ -1,10 +1,7 @@
 #include "core/cloud/fit.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
-#include <unordered_map>
 
 #include "core/cloud/coarse.h"
 #include "core/cloud/fit_steps.h"
@@ -13,120 +10,6 @@
 #include "core/median.h"
 
 namespace seamwright {
-namespace fitting {
-namespace {
-
-// 0..5: the axis that a normal follows most, and its side.
-int facing_of(const Eigen::Vector3d& normal) {
-    Eigen::Index axis = 0;
-    normal.cwiseAbs().maxCoeff(&axis);
-    return static_cast<int>(2 * axis) + (normal[axis] < 0);
-}
-
-using Key = std::array<int, 4>;
-Key key_of(const Residual& r, const Eigen::Vector3d& corner, double cell_mm) {
-    const Eigen::Vector3d c = (r.place - corner) / cell_mm;
-    return {static_cast<int>(std::floor(c.x())), static_cast<int>(std::floor(c.y())),
-            static_cast<int>(std::floor(c.z())), facing_of(r.normal)};
-}
-
-std::map<Key, std::vector<std::size_t>> cells_of(const std::vector<Residual>& residuals, double cell_mm) {
-    Eigen::AlignedBox3d box;
-    for (const Residual& r : residuals) box.extend(r.place);
-    std::map<Key, std::vector<std::size_t>> cells;
-    for (std::size_t i = 0; i < residuals.size(); ++i)
-        cells[key_of(residuals[i], box.min(), cell_mm)].push_back(i);
-    return cells;
-}
-
-double longest(const std::vector<Residual>& residuals) {
-    Eigen::AlignedBox3d box;
-    for (const Residual& r : residuals) box.extend(r.place);
-    constexpr double kLeastSize_mm = 1e-3;
-    return box.isEmpty() ? 1 : std::max(kLeastSize_mm, box.diagonal().norm());
-}
-
-// Cells of the size at which there are about `count`.
-std::map<Key, std::vector<std::size_t>> cells_about(const std::vector<Residual>& residuals,
-                                                    std::size_t count) {
-    constexpr double kFiner = 1.25;  // from one size of cells to the next
-    double cell = longest(residuals);
-    auto cells = cells_of(residuals, cell);
-    for (int k = 0; k < 24; ++k) {
-        auto finer = cells_of(residuals, cell / kFiner);
-        if (finer.size() > count) break;
-        cell /= kFiner;
-        cells = std::move(finer);
-    }
-    return cells;
-}
-
-}  // namespace
-
-std::vector<Residual> residuals_of(const Cloud& cloud, const Surface& surface, const Pose& base_from_part,
-                                   double gate_mm, bool facing) {
-    const Pose part_from_base = base_from_part.inverse();
-    std::vector<Residual> out;
-    out.reserve(cloud.size());
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-        Eigen::Vector3d side;
-        const bool known = facing && cloud.has_towards();
-        if (known) side = part_from_base.linear() * cloud.towards[i].cast<double>();
-        const auto near = surface.nearest(part_from_base * cloud.points[i], gate_mm, known ? &side : nullptr);
-        if (!near || near->at_border) continue;
-        const double sigma = cloud.has_sigma() ? static_cast<double>(cloud.sigma_mm[i]) : 0;
-        out.push_back({base_from_part * near->point, base_from_part.linear() * near->normal, near->signed_mm,
-                       sigma * sigma});
-    }
-    return out;
-}
-
-double local_noise_mm(const std::vector<Residual>& residuals) {
-    std::vector<double> variances;
-    for (const auto& [key, members] :
-         cells_about(residuals, std::max<std::size_t>(1, residuals.size() / 8))) {
-        if (members.size() < 3) continue;
-        double mean = 0, squares = 0;
-        for (const std::size_t i : members)
-            mean += residuals[i].value_mm / static_cast<double>(members.size());
-        for (const std::size_t i : members)
-            squares += (residuals[i].value_mm - mean) * (residuals[i].value_mm - mean);
-        variances.push_back(squares / static_cast<double>(members.size() - 1));
-    }
-    // The median of a variance of some eight points lies a tenth below it.
-    constexpr double kMeanOfMedian = 1.1;
-    return std::sqrt(kMeanOfMedian * median(variances));
-}
-
-std::vector<FormNode> form_nodes(const std::vector<Residual>& residuals, const FitSystem& system,
-                                 double noise_mm) {
-    constexpr double kLeastNoise_mm2 = 1e-10;
-    constexpr double kNoNormal = 1e-3;  // length of a mean of normals that cancel each other
-    std::vector<FormNode> nodes;
-    for (const auto& [key, members] : cells_about(residuals, 180)) {
-        FormNode node;
-        const auto n = static_cast<double>(members.size());
-        for (const std::size_t i : members) {
-            const Residual& r = residuals[i];
-            node.place_mm += r.place / n;
-            node.normal += r.normal / n;
-            node.residual_mm += r.value_mm / n;
-            node.noise_mm2 += (r.noise_mm2 > 0 ? r.noise_mm2 : noise_mm * noise_mm) / (n * n);
-            Vector6 row;
-            row << r.normal, (r.place - system.middle).cross(r.normal) / system.spread_mm;
-            node.row += row / n;
-        }
-        node.noise_mm2 = std::max(node.noise_mm2, kLeastNoise_mm2);
-        const double length = node.normal.norm();
-        if (length < kNoNormal) continue;
-        node.normal /= length;
-        nodes.push_back(node);
-    }
-    return nodes;
-}
-
-}  // namespace fitting
-
 namespace {
 
 using namespace fitting;
@@ -137,9 +20,13 @@ constexpr double kFirstGate = 0.03, kLeastGate = 1e-4;
 constexpr double kCaptureOfStart = 0.05, kCaptureOfSearch = 0.1, kCaptureOfRival = 0.08;
 // Of the gate's square: the fit by sides may be so much worse, else the triangles face inwards.
 constexpr double kSidedWorse = 0.2;
+// Normals that look to either side at random leave so many points less, or so much farther off.
+constexpr double kNormalsMatch = 0.9, kNormalsOff = 1.5, kMedianOff = 0.1;
 constexpr double kSettled_mm = 0.1;  // a motion by the form's model that is not repeated
-// Of the part's size, at its corners: the same pose; the same rival.
-constexpr double kSamePose = 0.004, kSameRival = 0.01;
+// Of the part's size, at its corners: a pose near by; the same rival.
+constexpr double kNearPose = 0.004, kSameRival = 0.01;
+// Of the points: fewer speak for nothing. Poses near by and those on a sheet's other face differ at its ends alone.
+constexpr double kLeastShare = 0.004, kLeastShareNear = 0.001;
 constexpr double kLeastForm_mm = 0.2;  // that a point is off anyway
 
 struct Levels {
@@ -156,6 +43,10 @@ double net(const FitRival& r) {
            static_cast<double>(kAgainstRival) * static_cast<double>(r.for_rival);
 }
 
+bool nearer_to_as_good(const FitRival& x, const FitRival& y) {
+    return x.told_apart != y.told_apart ? y.told_apart : net(x) < net(y);
+}
+
 // Mean squared distance, at most the gate's: 0 perfect, 1 nothing of it near.
 double badness(const Cloud& judges, const Surface& surface, const Pose& pose, double gate_mm, bool facing) {
     double sum = 0;
@@ -168,6 +59,10 @@ class Fit {
     Fit(const Cloud& cloud, const Surface& surface, const FitOptions& options)
         : surface_(surface), options_(options), size_(surface.size_mm()) {
         levels_.fine = thinned(cloud, 30000);
+        if (!levels_.fine.has_towards() && levels_.fine.has_normals()) {
+            levels_.fine.towards = levels_.fine.normals;
+            by_normals_ = true;
+        }
         if (options.noise_mm > 0) {  // of the raw points; thinning averages it away
             const double averaged =
                 std::sqrt(static_cast<double>(levels_.fine.size()) / static_cast<double>(cloud.size()));
@@ -183,8 +78,17 @@ class Fit {
 
     Expected<SurfaceFit> run() {
         SEAM_TRY(auto starts, starting_poses());
-        if (!take_best(starts) || !on_the_part() || !closed_directions() || !sure()) return out_;
-        look_for_rivals();
+        if (!take_best(starts)) return out_;
+        constexpr int kMostSteps = 4;  // from one face to the other, facing by facing
+        for (int step = 0; on_the_part() && closed_directions() && sure(); ++step) {
+            better_.reset();
+            best_net_ = 0;
+            out_.rivals.clear();
+            look_for_rivals();
+            if (!better_ || out_.status != FitStatus::ambiguous || step == kMostSteps) break;
+            out_.reason = {};
+            settle(*better_, {std::max(4 * out_.gate_mm, floor_), floor_, 60, facing_});
+        }
         return out_;
     }
 
@@ -244,12 +148,22 @@ class Fit {
         facing_ = sided && least_sided < least + kSidedWorse;
         Refined r =
             refine(levels_.judges, surface_, facing_ ? best_sided : best, {gate_, floor_, 60, facing_});
-        r = refine(levels_.fine, surface_, r.base_from_part,
-                   {std::max(4 * r.gate_mm, floor_), floor_, 60, facing_});
+        if (facing_ && by_normals_) {
+            Refined plain = refine(levels_.judges, surface_, best, {gate_, floor_, 60, false});
+            facing_ = static_cast<double>(r.system.matched) >
+                          kNormalsMatch * static_cast<double>(plain.system.matched) &&
+                      r.system.median_mm < kNormalsOff * plain.system.median_mm + kMedianOff * floor_;
+            if (!facing_) r = std::move(plain);
+        }
+        settle(r.base_from_part, {std::max(4 * r.gate_mm, floor_), floor_, 60, facing_});
+        return true;
+    }
+
+    void settle(const Pose& near, const RefineOptions& options) {
+        const Refined r = refine(levels_.fine, surface_, near, options);
         system_ = r.system;
         rigid_ = out_.base_from_part = r.base_from_part;
         out_.gate_mm = r.gate_mm;
-        return true;
     }
 
     bool on_the_part() {
@@ -305,7 +219,7 @@ class Fit {
             if (stopped(options_)) return refuse(FitStatus::cancelled, "cancelled");
             const auto residuals =
                 residuals_of(seen, surface_, out_.base_from_part, out_.gate_mm + moved_mm, facing_);
-            const double scatter = local_noise_mm(residuals);
+            const double scatter = scatter_mm_ = local_noise_mm(residuals);
             // Of a raw point: thinning averaged over so many.
             const double averaged =
                 std::sqrt(static_cast<double>(out_.points) / static_cast<double>(levels_.fine.size()));
@@ -350,57 +264,111 @@ class Fit {
         return picked(cloud, kept);
     }
 
-    // Rivals are refined without a bend, so it is the rigid fit that they are compared with.
-    bool elsewhere(const Pose& pose) const {
-        const double near = std::max(kSamePose * size_, 5 * (out_.noise_mm + out_.form_mm));
-        if (corner_distance_mm(surface_, pose, rigid_) <= near) return false;
-        if (angle_rad(pose, out_.base_from_part) > 1) return true;
-        const Vector6 d = difference(pose, out_.base_from_part);
+    Refined by_few(const Pose& pose) const {
+        return refine(levels_.few, surface_, pose, {gate_, floor_, 40, facing_});
+    }
+    Refined by_judges(const Pose& pose) const {
+        return refine(levels_.judges, surface_, pose,
+                      {std::max(4 * out_.gate_mm, floor_), floor_, 60, facing_});
+    }
+
+    bool beyond_the_stated(const Pose& pose, const Pose& found) const {
+        if (angle_rad(pose, found) > 1) return true;
+        const Vector6 d = difference(pose, found);
         return d.dot(solve_symmetric(out_.covariance, d).col(0)) > kNoOtherPlace;
+    }
+
+    // Rivals are refined without a bend, so it is the rigid fit that they are compared with; near by, the same points
+    // find the same place.
+    bool elsewhere(Pose& pose) const {
+        if (!near_by(pose)) return beyond_the_stated(pose, out_.base_from_part);
+        if (!beyond_the_stated(pose, few_)) return false;
+        pose = by_judges(pose).base_from_part;
+        return beyond_the_stated(pose, judged_);
+    }
+    bool near_by(const Pose& pose) const {
+        const double near = std::max(kNearPose * size_, 5 * (out_.noise_mm + out_.form_mm));
+        return corner_distance_mm(surface_, pose, rigid_) <= near;
     }
 
     void look_for_rivals() {
         out_.status = FitStatus::ok;
-        std::vector<Pose> candidates;
-        for (const Pose& pose : refined_)
-            candidates.push_back(
-                refine(levels_.few, surface_, pose, {gate_, floor_, 40, facing_}).base_from_part);
+        struct Contender {
+            Pose pose;
+            bool other_face = false;
+        };
+        std::vector<Contender> candidates;
+        for (const Pose& pose : refined_) candidates.push_back({by_few(pose).base_from_part});
         for (const Pose& start : rival_starts(surface_, out_.base_from_part, options_)) {
             if (stopped(options_)) {
                 refuse(FitStatus::cancelled, "cancelled");
                 return;
             }
             // A symmetry of the part is a rival as it stands; a refinement from it may end elsewhere.
-            if (angle_rad(start, out_.base_from_part) > 1) candidates.push_back(start);
-            candidates.push_back(refine(levels_.few, surface_, start,
-                                        {std::max(gate_, kCaptureOfRival * size_), floor_, 40, facing_})
-                                     .base_from_part);
+            if (angle_rad(start, out_.base_from_part) > 1) candidates.push_back({start});
+            candidates.push_back({refine(levels_.few, surface_, start,
+                                         {std::max(gate_, kCaptureOfRival * size_), floor_, 40, facing_})
+                                      .base_from_part});
         }
+        if (!facing_)
+            for (const Cloud& seen : on_other_faces(levels_.few, surface_, rigid_, out_.gate_mm)) {
+                if (stopped(options_)) {
+                    refuse(FitStatus::cancelled, "cancelled");
+                    return;
+                }
+                const double capture = std::max(gate_, kCaptureOfRival * size_);
+                const Refined there = refine(seen, surface_, rigid_, {capture, floor_, 40, true});
+                candidates.push_back({by_few(there.base_from_part).base_from_part, true});
+            }
+        few_ = by_few(rigid_).base_from_part;
+        judged_ = by_judges(rigid_).base_from_part;
         // What a point is off anyway.
         const double form = std::max({kLeastForm_mm, 3 * out_.form_mm, 3 * local_judges_mm()});
-        const double most = std::max(out_.gate_mm, 6 * form);
-        for (const Pose& pose : candidates) {
-            if (!elsewhere(pose) || !within_start(pose, surface_, options_)) continue;
+        for (Contender& candidate : candidates) {
+            if (!elsewhere(candidate.pose) || !within_start(candidate.pose, surface_, options_)) continue;
             // Of several that ended near one another the one that is nearest to being as good.
-            FitRival rival = compare(levels_.judges, surface_, rigid_, pose, form, most, facing_);
+            FitRival rival = compared(candidate.pose, candidate.other_face, form);
+            rival.other_face = candidate.other_face;
             const auto known = std::find_if(out_.rivals.begin(), out_.rivals.end(), [&](const FitRival& r) {
-                return corner_distance_mm(surface_, r.base_from_part, pose) < kSameRival * size_;
+                return corner_distance_mm(surface_, r.base_from_part, candidate.pose) < kSameRival * size_;
             });
             if (known == out_.rivals.end())
                 out_.rivals.push_back(rival);
-            else if (net(rival) < net(*known))
+            else if (nearer_to_as_good(rival, *known))
                 *known = rival;
         }
-        std::stable_sort(out_.rivals.begin(), out_.rivals.end(),
-                         [](const FitRival& x, const FitRival& y) { return net(x) < net(y); });
+        std::stable_sort(out_.rivals.begin(), out_.rivals.end(), nearer_to_as_good);
         if (out_.rivals.size() > 5) out_.rivals.resize(5);
         if (out_.rivals.empty() || out_.rivals.front().told_apart) return;
         const FitRival& r = out_.rivals.front();
-        refuse(FitStatus::ambiguous,
-               Text("the part lies as well {:.1f} mm and {:.1f} degrees away: {} points speak for the one "
-                    "place, {} for the other",
-                    corner_distance_mm(surface_, r.base_from_part, out_.base_from_part),
-                    deg_from_rad(angle_rad(r.base_from_part, out_.base_from_part)), r.for_best, r.for_rival));
+        const double away_mm = corner_distance_mm(surface_, r.base_from_part, out_.base_from_part);
+        refuse(
+            FitStatus::ambiguous,
+            r.other_face
+                ? Text(
+                      "the part lies as well on the other face of its sheet, {:.1f} mm away: {} points speak "
+                      "for the one place, {} for the other; a scan that shows both faces or where the sheet "
+                      "ends, or that says where it was seen from (towards_x, towards_y, towards_z), decides",
+                      away_mm, r.for_best, r.for_rival)
+                : Text("the part lies as well {:.1f} mm and {:.1f} degrees away: {} points speak for the one "
+                       "place, {} for the other",
+                       away_mm, deg_from_rad(angle_rad(r.base_from_part, out_.base_from_part)), r.for_best,
+                       r.for_rival));
+    }
+
+    // Of sheets the rival may turn out to be the better one.
+    FitRival compared(const Pose& pose, bool other_face, double form) {
+        if (!other_face && !near_by(pose))
+            return compare(levels_.judges, surface_, rigid_, pose, form, std::max(out_.gate_mm, 6 * form),
+                           kLeastShare, facing_);
+        // Two faces are off alike by what the whole part is off anyway; of a small step a point says on which side it lies.
+        form =
+            std::min(3 * std::max(out_.form_mm, scatter_mm_), corner_distance_mm(surface_, pose, rigid_) / 2);
+        bool better = false;
+        const FitRival rival = compare(levels_.fine, surface_, rigid_, pose, form,
+                                       std::max(out_.gate_mm, 6 * form), kLeastShareNear, facing_, &better);
+        if (better && net(rival) < best_net_) better_ = pose, best_net_ = net(rival);
+        return rival;
     }
 
     // Of one judge: the points' noise as far as thinning left it.
@@ -413,12 +381,16 @@ class Fit {
     const Surface& surface_;
     FitOptions options_;
     double size_ = 0, gate_ = 0, floor_ = 0;
-    bool facing_ = false;
+    bool facing_ = false, by_normals_ = false;
     Levels levels_;
     FitSystem system_;
     Matrix6 motion_covariance_ = Matrix6::Zero();
-    Pose rigid_ = Pose::Identity();  // before the form's model moved it
+    Pose rigid_ = Pose::Identity();                            // before the form's model moved it
+    Pose few_ = Pose::Identity(), judged_ = Pose::Identity();  // the same place as fewer points have it
+    double scatter_mm_ = 0;                                    // of a point of the fine level
     std::vector<Pose> refined_;
+    std::optional<Pose> better_;  // a rival that the points speak for, the most clearly
+    double best_net_ = 0;
     SurfaceFit out_;
 };
 

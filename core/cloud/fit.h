@@ -8,8 +8,13 @@
 // Never "ok" at a wrong place. Every pose that the search found, and the found one turned by quarter, third and half
 // turns about the part's axes, tilted and shifted along them, is refined too; a rival that ends elsewhere and explains
 // the scan as well is a reason to refuse. As well: the scan's points that are nearer to the part with the one pose than
-// with the other, by more than what form and noise are anyway, do not speak clearly for one. With a start, rivals
-// further from it than the start's own tolerance are out.
+// with the other, by more than what form and noise are anyway, do not speak clearly for one. Elsewhere: outside of the
+// stated region. With a start, rivals further from it than the start's own tolerance are out.
+//
+// A sheet that is drawn with its thickness has two faces that explain a scan of one of them alike. Each face's points are
+// put on the opposite one and refined; only what is seen of the sheet's ends then speaks for the one. Where every point
+// has its side - towards the sensor, else its normal, outwards - it lies on a face that looks there. Normals of undecided
+// sign are noticed and not used; those that all look inwards are not.
 //
 // Refused: under_determined, directions that the seen surface leaves open, named; ambiguous; no_fit, where the scan is
 // not of this part or starts too far away. Degenerate: planes, cylinders and spheres leave directions open; boxes and
@@ -49,6 +54,7 @@ struct FitRival {
     std::size_t for_best = 0, for_rival = 0;  // points that speak for the one and for the other
     bool told_apart = false;
     bool too_far_from_start = false;  // out by the start alone
+    bool other_face = false;          // on the opposite faces of the part's sheets
 };
 
 struct SurfaceFit {

@@ -34,10 +34,16 @@ PlateAxes plate_axes(const Surface& surface, const Pose& base_from_part);
 // Starts for rivals of `best`: the same part turned by symmetries, tilted and shifted along its axes. With a start only
 // what stays within its tolerance.
 std::vector<Pose> rival_starts(const Surface& surface, const Pose& best, const FitOptions& options);
+// A sheet's two faces explain a scan of the one alike. The cloud again, each time with `towards` for the faces where it
+// lies, but the opposite ones for the points of one facing, of two, or of all: refined with facing, a rival.
+std::vector<Cloud> on_other_faces(const Cloud& cloud, const Surface& surface, const Pose& best,
+                                  double gate_mm);
 bool within_start(const Pose& pose, const Surface& surface, const FitOptions& options);
-// What `judges` say of two poses. `form_mm`: what a point may be off anyway.
+// What `judges` say of two poses. `form_mm`: what a point may be off anyway. A smaller share of them than `least_share`
+// speaks for nothing. `rival_is_better`, if given: they speak as clearly for the rival as told_apart means for the best.
 FitRival compare(const Cloud& judges, const Surface& surface, const Pose& best, const Pose& rival,
-                 double form_mm, double most_mm, bool facing);
+                 double form_mm, double most_mm, double least_share, bool facing,
+                 bool* rival_is_better = nullptr);
 // The largest distance of a corner of the part's box between two poses.
 double corner_distance_mm(const Surface& surface, const Pose& a, const Pose& b);
 

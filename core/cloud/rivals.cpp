@@ -11,9 +11,12 @@
 namespace seamwright::fitting {
 namespace {
 
-// Fewer points than these speak for nothing: beside them, kAgainstRival times the rival's own are asked for.
-constexpr double kLeastShare = 0.004;
+// Fewer points speak for nothing: beside them, kAgainstRival times the rival's own are asked for.
 constexpr std::size_t kLeastPoints = 8;
+// Of a point's face: cos of 37 degrees between normals of one facing; facings that are turned by themselves and by twos;
+// fewer points are no face.
+constexpr double kOneFacing = 0.8;
+constexpr std::size_t kMostFacings = 6, kLeastOfFacing = 3;
 constexpr double kLeastHalf_mm = 1e-3;  // of the part's thickness
 // cos of 6 degrees: farther from the drawing's axes the part's own are others.
 constexpr double kOwnAxes = 0.995;
@@ -82,8 +85,48 @@ std::vector<Pose> rival_starts(const Surface& surface, const Pose& best, const F
     return out;
 }
 
+std::vector<Cloud> on_other_faces(const Cloud& cloud, const Surface& surface, const Pose& best,
+                                  double gate_mm) {
+    struct Facing {
+        Eigen::Vector3f normal;
+        std::vector<std::size_t> members;
+    };
+    std::vector<Facing> facings;
+    const Pose part_from_base = best.inverse();
+    Cloud seen = cloud;
+    seen.towards.assign(cloud.size(), Eigen::Vector3f::Zero());
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const auto near = surface.nearest(part_from_base * cloud.points[i], gate_mm);
+        if (!near) continue;
+        const Eigen::Vector3f normal = (best.linear() * near->normal).cast<float>();
+        seen.towards[i] = normal;
+        const auto alike = [&](const Facing& f) { return f.normal.dot(normal) > kOneFacing; };
+        auto mine = std::find_if(facings.begin(), facings.end(), alike);
+        if (mine == facings.end()) mine = facings.insert(mine, {normal, {}});
+        mine->members.push_back(i);
+    }
+    std::stable_sort(facings.begin(), facings.end(),
+                     [](const Facing& a, const Facing& b) { return a.members.size() > b.members.size(); });
+    while (!facings.empty() &&
+           (facings.size() > kMostFacings || facings.back().members.size() < kLeastOfFacing))
+        facings.pop_back();
+    std::vector<Cloud> out;
+    const auto turn = [](const Facing& facing, Cloud& turned) {
+        for (const std::size_t i : facing.members) turned.towards[i] = -turned.towards[i];
+    };
+    for (std::size_t a = 0; a < facings.size(); ++a)
+        for (std::size_t b = a; b < facings.size(); ++b) {
+            out.push_back(seen);
+            turn(facings[a], out.back());
+            if (b != a) turn(facings[b], out.back());
+        }
+    for (Eigen::Vector3f& side : seen.towards) side = -side;
+    out.push_back(std::move(seen));
+    return out;
+}
+
 FitRival compare(const Cloud& judges, const Surface& surface, const Pose& best, const Pose& rival,
-                 double form_mm, double most_mm, bool facing) {
+                 double form_mm, double most_mm, double least_share, bool facing, bool* rival_is_better) {
     FitRival r;
     r.base_from_part = rival;
     const std::vector<double> a = distances(judges, surface, best, most_mm, facing),
@@ -93,8 +136,9 @@ FitRival compare(const Cloud& judges, const Surface& surface, const Pose& best, 
         r.for_rival += a[i] > b[i] + form_mm;
     }
     const auto least =
-        std::max(kLeastPoints, static_cast<std::size_t>(kLeastShare * static_cast<double>(a.size())));
+        std::max(kLeastPoints, static_cast<std::size_t>(least_share * static_cast<double>(a.size())));
     r.told_apart = r.for_best >= least + kAgainstRival * r.for_rival;
+    if (rival_is_better) *rival_is_better = r.for_rival >= least + kAgainstRival * r.for_best;
     return r;
 }
 

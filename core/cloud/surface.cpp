@@ -3,33 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <random>
 #include <unordered_map>
+
+#include "core/geometry/welded.h"
 
 namespace seamwright {
 namespace {
 
 constexpr double kSmoothCos = 0.819;  // cos of 35 degrees
 constexpr double kGrazing = 0.1;      // cos of 84 degrees: no stripe is seen on a face that leans away more
-constexpr double kGrain = 1e-6, kLeastGrain_mm = 1e-9;  // of the part's size: corners as near are one
 constexpr std::int32_t kLeafFaces = 4;
 
 using Corners = std::array<int, 3>;
-
-// One number for corners that are one place.
-std::vector<int> welded(const TriangleMesh& mesh) {
-    const Eigen::AlignedBox3d box = mesh.box();
-    const double grain = std::max(kLeastGrain_mm, kGrain * box.diagonal().norm());
-    std::map<std::array<std::int64_t, 3>, int> known;
-    std::vector<int> one(mesh.vertices.size());
-    for (std::size_t i = 0; i < one.size(); ++i) {
-        const Eigen::Vector3d q = (mesh.vertices[i] - box.min()) / grain;
-        const std::array<std::int64_t, 3> key{std::llround(q.x()), std::llround(q.y()), std::llround(q.z())};
-        one[i] = known.emplace(key, static_cast<int>(known.size())).first->second;
-    }
-    return one;
-}
 
 std::uint64_t edge_key(int a, int b) {
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(std::min(a, b))) << 32 |

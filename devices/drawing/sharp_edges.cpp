@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <unordered_map>
 
 #include "core/geometry/pose.h"
+#include "core/geometry/welded.h"
 #include "devices/drawing/drawing.h"
 
 namespace seamwright {
@@ -21,20 +21,6 @@ struct Piece {
 
 std::size_t at(int i) {
     return static_cast<std::size_t>(i);
-}
-
-// Vertices by place: the first of those that lie together stands for all.
-std::vector<int> welded(const TriangleMesh& mesh) {
-    const Eigen::AlignedBox3d box = mesh.box();
-    const double cell = std::max(1e-9, 1e-6 * box.diagonal().norm());
-    std::map<std::array<std::int64_t, 3>, int> known;
-    std::vector<int> same(mesh.vertices.size());
-    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-        const Eigen::Vector3d v = (mesh.vertices[i] - box.min()) / cell;
-        const std::array<std::int64_t, 3> key{std::llround(v.x()), std::llround(v.y()), std::llround(v.z())};
-        same[i] = known.emplace(key, static_cast<int>(i)).first->second;
-    }
-    return same;
 }
 
 std::vector<Piece> pieces_of(const TriangleMesh& mesh, double sharp_deg) {

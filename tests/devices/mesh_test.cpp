@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <random>
 
 #include "devices/simulated/scene/door.h"
@@ -239,6 +241,79 @@ TEST(MeshFile, ReadsStlPlyAndObj) {
     EXPECT_FALSE(load_mesh(stl, "inch"));
 }
 
+// A closed box as a binary STL, triangle by triangle.
+std::string binary_stl(const Vector3d& size, const std::string& head) {
+    static constexpr int kQuads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                         {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    std::string bytes = head;
+    bytes.resize(80, ' ');
+    const auto put = [&](const auto& value) {
+        bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    put(std::uint32_t{12});
+    for (const auto& q : kQuads)
+        for (const auto& t : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
+            for (int k = 0; k < 3; ++k) put(0.0F);
+            for (const int c : t)
+                for (int k = 0; k < 3; ++k) put(static_cast<float>((q[c] >> k & 1) != 0 ? size[k] : 0));
+            put(std::uint16_t{0});
+        }
+    return bytes;
+}
+
+TEST(MeshFile, ABinaryStlThatEndsBeforeItsTrianglesIsRefused) {
+    const TemporaryFolder folder;
+    for (const std::string head : {"made by a test", "solid box"}) {
+        const std::string whole = binary_stl({100, 60, 30}, head);
+        const auto read = load_mesh(folder.write("whole.stl", whole), "mm");
+        ASSERT_TRUE(read) << read.error().sentence();
+        EXPECT_EQ(read->triangles.size(), 12U);
+        // Between triangles, inside of one, by a byte; what follows the last one is nobody's.
+        for (const std::size_t left : {84 + 50 * 7, 84 + 50 * 7 + 33, 84 + 50 * 12 - 1, 84, 83}) {
+            const auto cut =
+                load_mesh(folder.write("cut.stl", whole.substr(0, static_cast<std::size_t>(left))), "mm");
+            ASSERT_FALSE(cut) << left;
+            EXPECT_THAT(cut.error().sentence(), HasSubstr("is cut short")) << left;
+        }
+        EXPECT_TRUE(load_mesh(folder.write("more.stl", whole + "\n\n"), "mm"));
+    }
+}
+
+TEST(MeshFile, TrianglesThatTurnAgainstTheirNeighboursAreTurnedOutwards) {
+    const TemporaryFolder folder;
+    std::mt19937 random(3);
+    const auto volume_of = [](const TriangleMesh& mesh) {
+        double volume = 0;
+        for (const auto& t : mesh.triangles) {
+            const auto at = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
+            volume += at(0).dot(at(1).cross(at(2))) / 6;
+        }
+        return volume;
+    };
+    const std::string whole = binary_stl({100, 60, 30}, "box");
+    const auto flipped = [&](unsigned which) {
+        std::string bytes = whole;
+        for (std::size_t t = 0; t < 12; ++t)
+            if ((which >> t & 1U) != 0)
+                for (std::size_t k = 0; k < 12; ++k)
+                    std::swap(bytes[84 + 50 * t + 12 + k], bytes[84 + 50 * t + 24 + k]);
+        return load_mesh(folder.write("box.stl", bytes), "mm");
+    };
+    EXPECT_NEAR(volume_of(*flipped(0)), 180000, 1);
+    for (int trial = 0; trial < 20; ++trial)
+        EXPECT_NEAR(volume_of(*flipped(1 + random() % 4094)), 180000, 1) << trial;
+    // Inwards all over is somebody's intention, or a hollow.
+    EXPECT_NEAR(volume_of(*flipped(4095)), -180000, 1);
+    // A sheet turns as most of it does.
+    const auto sheet = load_mesh(
+        folder.write("sheet.obj", "v 0 0 0\nv 100 0 0\nv 0 100 0\nv 100 50 0\nf 1 3 2\nf 2 4 3\n"), "mm");
+    ASSERT_TRUE(sheet);
+    for (const auto& t : sheet->triangles) {
+        const auto at = [&](int k) { return sheet->vertices[static_cast<std::size_t>(t[k])]; };
+        EXPECT_LT((at(1) - at(0)).cross(at(2) - at(0)).z(), 0);
+    }
+}
+
 TEST(MeshFile, HostileFilesEndInASentence) {
     const TemporaryFolder folder;
     EXPECT_FALSE(load_mesh(folder.path() / "none.stl", ""));
@@ -258,7 +333,8 @@ TEST(MeshFile, HostileFilesEndInASentence) {
     const std::string corners = "v 0 0 0\nv 100 0 0\nv 0 100 0\n";
     EXPECT_FALSE(load_mesh(folder.write("back.obj", corners + "f 1 2 -9\n"), ""));
     EXPECT_FALSE(load_mesh(folder.write("huge.obj", corners + "f 1 2 99999999999999999999\n"), ""));
-    EXPECT_TRUE(load_mesh(folder.write("parts.obj", corners + "f 1/1/1 2//2 3/7\n"), ""));  // of textures nobody asks
+    EXPECT_TRUE(
+        load_mesh(folder.write("parts.obj", corners + "f 1/1/1 2//2 3/7\n"), ""));  // of textures nobody asks
     const auto ply = [&](const std::string& vertices, const std::string& faces, const std::string& face) {
         const std::string text =
             "ply\nformat ascii 1.0\nelement vertex " + vertices +

@@ -14,8 +14,12 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdint>
 #include <cstring>
+#include <fstream>
+#include <tuple>
 
+#include "core/geometry/welded.h"
 #include "devices/exchange/files.h"
 #include "devices/simulated/scene/polygon_file.h"
 
@@ -38,6 +42,77 @@ struct Watch {
         object->AddObserver(vtkCommand::WarningEvent, command);
     }
 };
+
+// Two triangles that turn alike run along their common side in opposite directions.
+void turn_alike(TriangleMesh& mesh) {
+    struct Side {
+        int low = 0, high = 0, triangle = 0;
+        bool rising = false;
+        bool joins(const Side& other) const { return low == other.low && high == other.high; }
+    };
+    const std::vector<int> one = welded(mesh);
+    std::vector<Side> sides;
+    sides.reserve(3 * mesh.triangles.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            const int a = one[static_cast<std::size_t>(mesh.triangles[t][k])],
+                      b = one[static_cast<std::size_t>(mesh.triangles[t][(k + 1) % 3])];
+            if (a != b) sides.push_back({std::min(a, b), std::max(a, b), static_cast<int>(t), a < b});
+        }
+    std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
+        return std::tie(x.low, x.high, x.triangle) < std::tie(y.low, y.high, y.triangle);
+    });
+    struct Joint {
+        std::size_t a = 0, b = 0;
+        bool against = false;
+    };
+    std::vector<Joint> joints;
+    for (std::size_t i = 0, next = 0; i < sides.size(); i = next) {
+        for (next = i + 1; next < sides.size() && sides[next].joins(sides[i]);) ++next;
+        if (next - i == 2)  // else a border, or sheets that meet
+            joints.push_back({static_cast<std::size_t>(sides[i].triangle),
+                              static_cast<std::size_t>(sides[i + 1].triangle),
+                              sides[i].rising == sides[i + 1].rising});
+    }
+    if (std::none_of(joints.begin(), joints.end(), [](const Joint& j) { return j.against; })) return;
+    struct Neighbour {
+        std::size_t triangle = 0;
+        bool against = false;
+    };
+    std::vector<std::vector<Neighbour>> beside(mesh.triangles.size());
+    for (const Joint& j : joints) {
+        beside[j.a].push_back({j.b, j.against});
+        beside[j.b].push_back({j.a, j.against});
+    }
+    const Eigen::Vector3d middle = mesh.box().center();
+    std::vector<char> known(mesh.triangles.size(), 0), turned(mesh.triangles.size(), 0);
+    for (std::size_t first = 0; first < mesh.triangles.size(); ++first) {
+        if (known[first]) continue;
+        std::vector<std::size_t> body{first};
+        known[first] = 1;
+        double area_as_it_is = 0, area_turned = 0, volume = 0;
+        bool closed = true;
+        for (std::size_t i = 0; i < body.size(); ++i) {
+            const std::size_t t = body[i];
+            Eigen::Vector3d c[3];
+            for (int k = 0; k < 3; ++k)
+                c[k] = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][k])] - middle;
+            (turned[t] ? area_turned : area_as_it_is) += (c[1] - c[0]).cross(c[2] - c[0]).norm();
+            volume += (turned[t] ? -1 : 1) * c[0].dot(c[1].cross(c[2]));
+            closed = closed && beside[t].size() == 3;
+            for (const Neighbour& n : beside[t]) {
+                if (known[n.triangle]) continue;
+                known[n.triangle] = 1;
+                turned[n.triangle] = (turned[t] != 0) != n.against;
+                body.push_back(n.triangle);
+            }
+        }
+        if (area_turned == 0) continue;
+        const bool first_is_right = closed ? volume > 0 : area_turned <= area_as_it_is;
+        for (const std::size_t t : body)
+            if ((turned[t] != 0) == first_is_right) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+    }
+}
 
 Expected<TriangleMesh> triangulated(vtkPolyData* surface, const std::string& where) {
     Watch watch;
@@ -72,10 +147,32 @@ Expected<TriangleMesh> triangulated(vtkPolyData* surface, const std::string& whe
         if (n.norm() > 0) mesh.triangles.push_back(t);
     }
     if (mesh.triangles.empty()) return file_error("holds only degenerate triangles", where);
+    turn_alike(mesh);
     return mesh;
 }
 
+// Of a binary STL: a header of 80 bytes, the number of triangles, 50 bytes each. VTK reads what is there and counts
+// nothing; only a text holds no zero byte.
+Expected<void> check_stl_is_whole(const std::filesystem::path& path) {
+    constexpr std::size_t kHeader = 80, kBegins = kHeader + 4, kTriangle = 50;
+    std::array<char, 512> begin{};
+    std::ifstream file(path, std::ios::binary);
+    file.read(begin.data(), begin.size());
+    const auto held = static_cast<std::size_t>(file.gcount());
+    if (std::find(begin.begin(), begin.begin() + held, '\0') == begin.begin() + held) return {};
+    std::uint32_t stated = 0;
+    std::error_code problem;
+    const std::uintmax_t size = std::filesystem::file_size(path, problem);
+    if (held >= kBegins) std::memcpy(&stated, begin.data() + kHeader, sizeof stated);
+    if (problem || size < kBegins + kTriangle * std::uintmax_t{stated})
+        return file_error(Text("is cut short: it states {} triangles and holds {}", stated,
+                               size < kBegins ? 0 : (size - kBegins) / kTriangle),
+                          path.string(), "copy it again");
+    return {};
+}
+
 Expected<TriangleMesh> read_stl(const std::filesystem::path& path) {
+    SEAM_OK(check_stl_is_whole(path));
     Watch watch;
     vtkNew<vtkSTLReader> reader;
     watch.on(reader);

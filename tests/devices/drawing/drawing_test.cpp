@@ -182,6 +182,21 @@ TEST(Drawing, AMeshGivesItsSharpEdgesAsChains) {
     }
 }
 
+TEST(Drawing, TrianglesTurnedTheWrongWayMakeNoEdges) {
+    const auto exact = read(box_step(100, 60, 30, 0));
+    ASSERT_TRUE(exact);
+    TriangleMesh mixed = exact->mesh;
+    for (std::size_t t = 0; t < mixed.triangles.size(); t += 3)
+        std::swap(mixed.triangles[t][1], mixed.triangles[t][2]);
+    const auto d = read_drawing(ply_bytes(mixed), "mixed.ply");
+    ASSERT_TRUE(d) << d.error().sentence();
+    EXPECT_EQ(d->edges.size(), 12u);
+    for (const DrawingEdge& e : d->edges) {
+        EXPECT_NEAR(e.fold_deg, 90, 1e-6);
+        EXPECT_TRUE(e.convex);
+    }
+}
+
 TEST(Drawing, ChainsFollowTangentEdgesRoundACorner) {
     const auto d = read(box_step(100, 60, 30, 5));
     ASSERT_TRUE(d);

@@ -23,6 +23,7 @@ constexpr double kLeastMode = 0.05;  // of kappa: variance that a mode starts wi
 constexpr double kSizeSettled = 1e-7;
 constexpr double kInformationAsymmetry = 1e-9, kInformationNegative = 1e-7;  // of its largest entry
 constexpr double kToldShare = 1e-6;  // of the direction that the rows tell best
+constexpr double kUnexplained = 2;   // scatter over stated sigma: parts that are rigid do not show it
 
 // A row along the directions that the rows tell.
 struct Told {
@@ -249,25 +250,118 @@ void put_modes(const Model& model, const MatrixXd& basis, std::span<const Told> 
     }
 }
 
-// The number by hold-out; its gains are kept in `out`.
+// Gain per part of the hold-out likelihood, and its standard error.
+struct Gain {
+    double mean = 0, sigma = 0;
+};
+Gain gain_of(const std::vector<double>& before, const std::vector<double>& after) {
+    const auto parts = static_cast<double>(after.size());
+    double mean = 0, square = 0;
+    for (std::size_t p = 0; p < after.size(); ++p) mean += (after[p] - before[p]) / parts;
+    for (std::size_t p = 0; p < after.size(); ++p)
+        square += (after[p] - before[p] - mean) * (after[p] - before[p] - mean) / (parts - 1);
+    return {mean, std::sqrt(square / parts)};
+}
+
+// The number by hold-out; its gains are kept in `out`. The smallest that no larger one gains on: of two strong modes the
+// first alone may gain nothing, kappa holds the second one then.
 int number_of_modes(std::span<const Told> rows, int most, const LearnOptions& options, ElasticModes& out) {
     const int folds = std::min(options.folds, out.parts);
-    std::vector<double> before = held_out(rows, out.parts, 0, folds);
-    int modes = 0;
-    for (; modes < most; ++modes) {
-        const std::vector<double> after = held_out(rows, out.parts, modes + 1, folds);
-        double mean = 0, square = 0;
-        for (std::size_t p = 0; p < after.size(); ++p) mean += (after[p] - before[p]) / out.parts;
-        for (std::size_t p = 0; p < after.size(); ++p)
-            square += (after[p] - before[p] - mean) * (after[p] - before[p] - mean) / (out.parts - 1);
-        out.gain.push_back(mean);
-        out.gain_sigma.push_back(std::sqrt(square / out.parts));
-        const bool told =
-            mean > options.gain_sigmas * out.gain_sigma.back() && mean * out.parts > options.least_gain;
-        if (!told) break;
-        before = after;
+    std::vector<std::vector<double>> likely;
+    for (int modes = 0; modes <= most; ++modes) likely.push_back(held_out(rows, out.parts, modes, folds));
+    const auto told = [&](std::size_t from, std::size_t to) {
+        const Gain gain = gain_of(likely[from], likely[to]);
+        return gain.mean > options.gain_sigmas * gain.sigma && gain.mean * out.parts > options.least_gain;
+    };
+    std::size_t modes = 0;
+    for (std::size_t from = 0; from < likely.size(); ++from)
+        for (std::size_t to = from + 1; to < likely.size() && modes == from; ++to)
+            if (told(from, to)) modes = from + 1;
+    for (std::size_t k = 0; k < likely.size() - 1 && k <= modes; ++k) {
+        const Gain gain = gain_of(likely[k], likely[k + 1]);
+        out.gain.push_back(gain.mean);
+        out.gain_sigma.push_back(gain.sigma);
     }
-    return modes;
+    return static_cast<int>(modes);
+}
+
+// A foreign body at one spot of one part.
+struct WrongSpot {
+    std::size_t row = 0, spot = 0;
+    double squares = 0;  // chi squared of two by the model of the other parts, over its limit
+};
+// The one that the model of the other parts, with all modes, contradicts most; over its limit when it is wrong.
+WrongSpot wrong_spot(std::span<const Told> rows, const MatrixXd& basis, int parts, Index modes, int folds) {
+    constexpr double kWrong = 40;  // of chi squared of two, the largest of thousands
+    WrongSpot worst;
+    for (int fold = 0; fold < folds; ++fold) {
+        std::vector<Told> kept;
+        for (const Told& row : rows)
+            if (row.part % folds != fold) kept.push_back(row);
+        const Model model = fit_model(kept, modes);
+        // What is learnt from few parts predicts worse than its noise says.
+        const double learnt = static_cast<double>(parts) * (folds - 1) / folds, numbers = 1.0 + modes;
+        const double limit = kWrong * (1 + numbers / std::max(1.0, learnt - numbers));
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            if (rows[i].part % folds != fold) continue;
+            const VectorXd off = rows[i].heard - rows[i].m * model.mean;
+            const MatrixXd heavy = rows[i].m * model.loading / model.kappa;
+            const MatrixXd inner = MatrixXd::Identity(modes, modes) + model.loading.transpose() * heavy;
+            const MatrixXd gain = inner.ldlt().solve(heavy.transpose());
+            const MatrixXd information = rows[i].m / model.kappa - heavy * gain;
+            const VectorXd score =
+                off / model.kappa - heavy * inner.ldlt().solve(model.loading.transpose() * off) / model.kappa;
+            for (Index n = 0; n < basis.rows() / 3; ++n) {
+                const MatrixXd here = basis.middleRows<3>(3 * n);
+                const Eigen::Vector3d heard = here * score;
+                const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(here * information *
+                                                                           here.transpose());
+                double squares = 0;
+                for (int k = 0; k < 3; ++k) {
+                    if (!(eigen.eigenvalues()[k] > kToldShare * eigen.eigenvalues()[2])) continue;
+                    const double along = eigen.eigenvectors().col(k).dot(heard);
+                    squares += along * along / eigen.eigenvalues()[k];
+                }
+                if (squares / limit > worst.squares)
+                    worst = {i, static_cast<std::size_t>(n), squares / limit};
+            }
+        }
+    }
+    return worst;
+}
+
+// The row as if the spot had not been measured.
+void leave_out(Told& row, const MatrixXd& basis, std::size_t spot) {
+    const MatrixXd here = basis.middleRows<3>(3 * static_cast<Index>(spot));
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(here * row.m * here.transpose());
+    Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
+    int lost = 0;
+    for (int k = 0; k < 3; ++k) {
+        if (!(eigen.eigenvalues()[k] > kToldShare * eigen.eigenvalues()[2])) continue;
+        inverse +=
+            eigen.eigenvectors().col(k) * eigen.eigenvectors().col(k).transpose() / eigen.eigenvalues()[k];
+        ++lost;
+    }
+    const Eigen::Vector3d heard = here * row.heard;
+    const MatrixXd across = row.m * here.transpose() * inverse;
+    row.power = std::max(0.0, row.power - heard.dot(inverse * heard));
+    row.heard -= across * heard;
+    row.m -= across * here * row.m;
+    row.m = (0.5 * (row.m + row.m.transpose())).eval();
+    row.rank -= lost;
+}
+
+// How many spots were left out. A body on one spot of one part would be taken for a mode, or for noise that hides them.
+int leave_out_wrong_spots(std::vector<Told>& rows, const MatrixXd& basis, int parts, Index modes, int folds) {
+    const std::size_t most = std::max<std::size_t>(1, rows.size() / 5);
+    std::size_t left_out = 0;
+    while (left_out < most) {
+        const WrongSpot wrong = wrong_spot(rows, basis, parts, modes, folds);
+        if (!(wrong.squares > 1) || rows[wrong.row].rank < 4) break;
+        leave_out(rows[wrong.row], basis, wrong.spot);
+        ++left_out;
+    }
+    return static_cast<int>(left_out);
 }
 
 }  // namespace
@@ -314,12 +408,24 @@ Expected<ElasticModes> learn_modes(std::span<const ElasticSpot> spots, std::span
         put_modes(model, basis, inner, out.parts, out);
         return out;
     }
+    const int left_out =
+        leave_out_wrong_spots(inner, basis, out.parts, most, std::min(options.folds, out.parts));
     const int modes = number_of_modes(inner, most, options, out);
     model = fit_model(inner, modes);
     out.noise_factor = std::sqrt(model.kappa);
     put_modes(model, basis, inner, out.parts, out);
-    out.message = modes == 0 ? Text("the parts are rigid as far as {} parts tell: no mode", out.parts)
-                             : Text("{} modes from {} parts", modes, out.parts);
+    if (modes > 0)
+        out.message = Text("{} modes from {} parts", modes, out.parts);
+    else if (out.noise_factor > kUnexplained)
+        out.message = Text(
+            "no mode: {} parts scatter by {:.1f} times what their spots' sigmas say, and no shape "
+            "explains it",
+            out.parts, out.noise_factor);
+    else
+        out.message = Text("the parts are rigid as far as {} parts tell: no mode", out.parts);
+    if (left_out > 0)
+        out.message = joined(out.message, "; ",
+                             Text("{} measures that the other parts contradict were left out", left_out));
     return out;
 }
 

@@ -21,8 +21,9 @@
 // Modes are the singular vectors of C; phi_k is scaled to length 1 at the spot that moves most, so that a_k is
 // in mm there, and its sign makes its largest coordinate positive.
 //
-// Number. Likelihood of the parts left out, in folds by part (runs of one part always together): a mode more is
-// taken when the gain exceeds its own standard error and `least_gain`, which noise does not reach. None is an answer.
+// Number. Likelihood of the parts left out, in folds by part (runs of one part always together): the smallest number on which
+// no larger one gains more than its own standard error and `least_gain`, which noise does not reach. None is an answer. Before,
+// a spot of one part is left out that the model of the other parts contradicts.
 //
 // Mean. The part that was taught was bent too, a_0: of the mean residual, what the modes explain is their mean
 // amplitude. The rest (`common_mm`) may as well be the references' own error: the bead does not follow it.

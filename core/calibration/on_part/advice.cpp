@@ -120,7 +120,7 @@ void add_pass(Data& data, State& state, Change change) {
 }  // namespace
 
 Open open_directions(const Eigen::MatrixXd& seen) {
-    constexpr double kBeside_mm = 0.05;   // of the mounting in an open direction: with less it is latency
+    constexpr double kBeside_mm = 0.05;   // of the mounting beside kOnPartOpen_s: with less it is latency
     constexpr double kNamedShare = 0.12;  // of an open direction: smaller parts are not named
     Open open;
     const SymmetricEigen eigen = symmetric_eigen(seen);
@@ -129,7 +129,10 @@ Open open_directions(const Eigen::MatrixXd& seen) {
         const double sigma = std::sqrt(std::max(0.0, eigen.values(i)));
         if (!(sigma > kOnPartOpen_mm)) break;
         const Eigen::VectorXd share = eigen.vectors.col(i).cwiseAbs2();
-        const bool only_latency = share.size() > 6 && sigma * std::sqrt(share.head<6>().sum()) < kBeside_mm;
+        const double beside = std::sqrt(share.head<6>().sum());
+        const bool only_latency =
+            share.size() > 6 &&
+            (sigma * beside < kBeside_mm || kOnPartOpen_mm * beside < kBeside_mm * std::sqrt(share(6)));
         (only_latency ? open.latency : open.mounting) = true;
         std::vector<std::pair<double, Eigen::Index>> parts;
         for (Eigen::Index k = 0; k < share.size(); ++k) parts.emplace_back(-share(k), k);

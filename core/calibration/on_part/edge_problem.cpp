@@ -17,6 +17,8 @@ namespace {
 constexpr double kLeastScaled = 1e-12, kLeastAcross_mm2 = 1e-10;
 constexpr double kAlongEdge = 0.01;    // of its sigma: no point is known better across its edge
 constexpr double kCostSettled = 1e-9;  // relative gain that ends a solution
+constexpr double kIdle_s =
+    0.1;  // a latency that nothing shows stays about where it began, and does not drift
 
 // Whitening matrices of covariances: their inverses' roots.
 Matrix6 root_of_inverse(const Matrix6& covariance) {
@@ -134,6 +136,15 @@ ceres::CostFunction* near_pose(const Pose& mean, const Matrix6& covariance) {
     return new ceres::AutoDiffCostFunction<NearPose, 6, 7>(new NearPose{mean, root_of_inverse(covariance)});
 }
 
+struct NearLatency {
+    double mean_s;
+    template <class T>
+    bool operator()(const T* latency, T* residual) const {
+        *residual = (*latency - mean_s) / kIdle_s;
+        return true;
+    }
+};
+
 // Curvatures of both axes.
 class Straightness final : public ceres::CostFunction {
   public:
@@ -207,6 +218,10 @@ struct Unknowns {
             if (problem.HasParameterBlock(edges[e].data()))
                 problem.AddResidualBlock(new Straightness(state.edges[e], variances.curvature[e]), nullptr,
                                          edges[e].data());
+        if (data.latency_free)
+            problem.AddResidualBlock(
+                new ceres::AutoDiffCostFunction<NearLatency, 1, 1>(new NearLatency{data.latency_s}), nullptr,
+                &latency);
         if (data.prior)
             problem.AddResidualBlock(near_pose(data.prior->flange_from_sensor, data.prior->covariance),
                                      nullptr, mounting.data());

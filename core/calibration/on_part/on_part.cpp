@@ -8,6 +8,7 @@
 #include "core/calibration/on_part/judge.h"
 #include "core/calibration/on_part/start.h"
 #include "core/calibration/pose_set.h"
+#include "core/calibration/statistics.h"
 #include "core/geometry/decompositions.h"
 #include "core/numbers.h"
 
@@ -20,9 +21,15 @@ constexpr double kNoise_mm = 0.03;  // of a point whose covariance is not known;
 constexpr std::size_t kFewestProfiles = 4;
 constexpr double kLatest_s = 1e12, kFarthestEdge_mm = 1e4;
 constexpr double kLeastVariance_mm2 = 1e-12, kMostVariance_mm2 = 1e4;  // of a point, where it is known
-constexpr double kSingular = 1e-12;  // eigenvalue of a prior scaled to unit diagonal, up to that
-constexpr double kIsotropic = 1e-4;  // of a covariance's trace, added: no point is exact in one direction
-constexpr double kLowerCost = 1e-6;  // by which a rival must be lower to take its place
+constexpr double kSingular = 1e-12;   // eigenvalue of a prior scaled to unit diagonal, up to that
+constexpr double kIsotropic = 1e-4;   // of a covariance's trace, added: no point is exact in one direction
+constexpr double kLowerCost = 1e-6;   // by which a rival must be lower to take its place
+constexpr int kFewestDirections = 3;  // of six: with less the sensor may be anywhere and would not show
+constexpr double kMoved = 0.99, kMovedSide = 0.995;  // of chi squared; of one side of a normal
+constexpr double kSpeaksAgainst = 0.999;             // of chi squared: then the usual robot is given up
+// One of those that are asked where none is stated.
+const RobotRepeatability kUsualRobot{0.05, 0.05 / kPassLever_mm};
+constexpr double kBlow_mm = 20, kBlow_rad = 0.1;  // sigma of what a blow may do
 
 Text place(const EdgePass& pass) {
     return Text("pass '{}'", pass.id);
@@ -190,23 +197,106 @@ std::optional<Found> find(const Data& data, const std::vector<State>& begun, con
     return found;
 }
 
-// The data alone are asked first: beside a prior that no longer holds, a moved sensor would look like noise.
+// -2 log of the restricted likelihood of the common profiles where an answer stands, by its own variances.
+double minus2_of(const Refined& r, const Data& common) {
+    Data data = common;
+    data.latency_free = false;
+    data.latency_s = r.state.latency_s;
+    State state = r.state;
+    if (!std::isfinite(solve_state(data, r.variances, {}, state))) return kInfinity;
+    const Blocks blocks = linearised(data, r.variances, state);
+    if (blocks.ss.size() == 0) return kInfinity;
+    const double rows = 2 * static_cast<double>(blocks.sight_of.size());
+    return at_variances(blocks, data, state, r.variances, view_of(state, r.working_point, blocks.wanted))
+               .minus2 +
+           2 * rows * std::log(r.variances.white);
+}
+
+// The likeliest answer that a blow's reach of the old place holds. One solution alone may run off along what is open, a
+// latency that nothing shows above all, and take its own misfit for the robot's; so it is held as well, and the old place
+// itself is one of those that are asked.
+std::optional<Refined> near_old(const Data& data, const State& old, const OnPartOptions& options) {
+    Data blown = data;
+    blown.prior->covariance.diagonal().head<3>().array() += kBlow_mm * kBlow_mm;
+    blown.prior->covariance.diagonal().tail<3>().array() += kBlow_rad * kBlow_rad;
+    std::vector<Refined> tried;
+    std::vector<double> ahead;
+    const auto take = [&](Refined r, double ahead_by = 0) {
+        r.data.prior = blown.prior;
+        if (r.solved) tried.push_back(std::move(r)), ahead.push_back(ahead_by);
+    };
+    const auto take_free = [&](const Data& from) {
+        if (const Refined r = refine(from, old, options.robot); r.solved)
+            take(without_idle_latency(from, r, options.robot));
+    };
+    Data held = blown;
+    held.latency_free = false;
+    take(refine(held, old, options.robot, true));
+    take(refine(held, old, options.robot));
+    if (!options.robot) take(refine(held, old, kUsualRobot, true), chi_squared_quantile(kSpeaksAgainst, 1));
+    take_free(data);
+    if (data.latency_free) take_free(blown);
+    Data common = blown;
+    for (const Refined& r : tried)
+        for (std::size_t i = 0; i < common.sights.size(); ++i)
+            if (!r.data.sights[i].used) common.sights[i].used = false;
+    const Refined* best = nullptr;
+    double least = kInfinity;
+    for (std::size_t i = 0; i < tried.size(); ++i)
+        if (const double minus2 = minus2_of(tried[i], common) - ahead[i]; minus2 < least)
+            least = minus2, best = &tried[i];
+    if (!best) return std::nullopt;
+    return *best;
+}
+
+// Gain of the squares when the prior is given up, for the same profiles at the same variances.
+double gain_without(const Refined& near, const MountingPrior& prior) {
+    Data data = near.data;
+    data.prior = prior;
+    State at_prior = near.state;
+    const double with = solve_state(data, near.variances, {}, at_prior);
+    data.prior = near.data.prior;
+    State state = near.state;
+    const double without = std::min(solve_state(data, near.variances, {}, state),
+                                    solve_state(data, near.variances, {}, at_prior));
+    return std::isfinite(without) && std::isfinite(with) ? (with - without) / near.neighbours : 0;
+}
+
+// The data are asked first: beside a prior that no longer holds, a moved sensor would look like noise.
 std::optional<OnPartResult> after_bump(const Data& data, const Names& names, const OnPartOptions& options) {
     const State old = start_at(data, options.prior->flange_from_sensor, options.latency_s.value_or(0), 8, 12);
     Data without = data;
     without.prior.reset();
     OnPartOptions alone = options;
     alone.prior.reset();
-    const Refined near = refine(without, old, options.robot);
-    if (!near.solved) return std::nullopt;
-    const BumpTest test = bump_of(near, *options.prior, near.state.mounting);
+    const auto found_near = near_old(data, old, options);
+    if (!found_near) return std::nullopt;
+    const Refined& near = *found_near;
+    BumpTest test = bump_of(near, *options.prior, near.state.mounting);
+    // What is weakly determined is far from linear: both ways of asking must say so.
+    test.chi_squared = std::min(test.chi_squared, gain_without(near, *options.prior));
+    test.limit = chi_squared_quantile(kMoved, 6);
+    if (!options.robot) {  // the passes' own errors are known from few passes alone
+        const double freedom =
+            4.0 * static_cast<double>(data.motions.size()) - 7 - 4.0 * static_cast<double>(data.edges);
+        const double wider =
+            student_quantile(kMovedSide, std::max(2.0, freedom)) / normal_quantile(kMovedSide);
+        test.limit *= wider * wider;
+    }
+    test.moved = test.directions > 0 && test.chi_squared > test.limit;
     OnPartResult result;
     if (test.moved) {
         std::vector<State> begun = starts(without);
         begun.insert(begun.begin(), near.state);
         const auto found = find(without, begun, alone);
-        if (!found) return std::nullopt;
-        result = judge(found->refined, without, names, found->rivals, alone);
+        result = found ? judge(found->refined, without, names, found->rivals, alone)
+                       : refused(names, OnPartStatus::undetermined,
+                                 "the sensor has moved, and these passes do not tell where it is now",
+                                 "make passes from more attitudes, leaning about all three axes");
+    } else if (test.directions < kFewestDirections) {
+        result = refused(names, OnPartStatus::undetermined,
+                         "these passes cannot tell whether the sensor has moved",
+                         "make passes from more attitudes, leaning about all three axes");
     } else {
         const Refined both = refine(data, old, options.robot);
         if (!both.solved) return std::nullopt;

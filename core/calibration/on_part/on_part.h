@@ -22,8 +22,12 @@
 // degree for 0.03 mm), as given or estimated. Averaging profiles does not make that smaller, only more passes do.
 //
 // Prior ("after a bump"): an old flange_from_sensor with its covariance. The test against zero asks whether the data
-// alone contradict it (chi squared at 99 % in the directions that they determine). Where they do not, prior and data are
-// one answer; where they do, the prior no longer holds and the data alone must determine the answer.
+// contradict it: chi squared of six at 99 %, of the data's answer within a blow's reach (20 mm, 6 degrees) against the
+// prior, and of the squares that giving up the prior gains; both must say so. Where the data do not, prior and data are
+// one answer; where they do, the prior no longer holds and the data alone must determine the answer. Passes that
+// determine fewer than three directions cannot tell, and there is no answer: the old place would be handed on unseen.
+//
+// A latency that no pass shows (travel along a straight edge) stays where it began, within 0.1 s.
 //
 // Open directions are read from the information matrix of H and tau with all else eliminated, at the place where the
 // sensor sees the edge (lever 100 mm): a sigma beyond 2 mm is open. It is named and its cure is the pass, of a list, whose
@@ -85,7 +89,7 @@ struct PartEdge {
 
 // The test of the prior against zero.
 struct BumpTest {
-    double chi_squared = 0, limit = 0;  // at 99 %
+    double chi_squared = 0, limit = 0;  // at 99 %; wider where the passes' own errors are estimated
     int directions = 0;                 // that the data determine
     bool moved = false;
     double shift_mm = 0,

@@ -188,7 +188,7 @@ Expected<CalibrationSolution> solve_on_part(const json& data, const ExcludedIds&
     result["moved"] = moved_json(solved);
     result["per_pass"] = per_pass_json(solved, passes);
     solution.notices = std::move(solved.notices);
-    if (solved.bump)
+    if (solved.bump && (ok || solved.bump->moved))
         solution.notices.insert(
             solution.notices.begin(),
             solved.bump->moved

@@ -68,6 +68,45 @@ TEST(ElasticModes, NoiseStatedTooSmallBecomesNoMode) {
     ASSERT_TRUE(modes);
     EXPECT_TRUE(modes->modes.empty());
     EXPECT_NEAR(modes->noise_factor, 3, 0.3);
+    EXPECT_EQ(modes->message.english().find("rigid"), std::string::npos) << modes->message.english();
+}
+
+// Two bends alike: the first mode alone gains next to nothing, the scatter holds the other one.
+TEST(ElasticModes, OfTwoBendsAsStrongNeitherHidesTheOther) {
+    const Door d = door(10);
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        const ElasticModes modes = learnt(d, 25, 0.3, 0.3, seed);
+        EXPECT_EQ(modes.modes.size(), 2u) << "seed " << seed;
+        EXPECT_LT(modes.noise_factor, 1.3) << "seed " << seed;
+    }
+}
+
+// 4 mm at one spot of one part are neither a mode nor noise that hides the others.
+TEST(ElasticModes, AForeignBodyIsLeftOut) {
+    const Door d = door(10);
+    for (std::uint64_t seed = 1; seed <= 6; ++seed)
+        for (const double bend : {0.0, 0.4}) {
+            Rng rng(seed);
+            std::normal_distribution<double> n;
+            std::vector<ElasticRow> all;
+            for (int p = 0; p < 25; ++p) {
+                auto spots =
+                    measured(d, small_motion(rng, 1, 0.1), {bend * n(rng), 0.6 * bend * n(rng), 0}, rng);
+                if (p == 7) spots[3].measured_mm.z() += 4;
+                CorrectionOptions options;
+                options.reject_outliers = false;
+                auto row = elastic_row(slots(d), spots, options, solve_region(spots, options)->displacement);
+                row->id = row->part_id = fmt::format("{}", p);
+                all.push_back(std::move(*row));
+            }
+            const auto modes = learn_modes(slots(d), all);
+            ASSERT_TRUE(modes);
+            EXPECT_EQ(modes->modes.size(), bend > 0 ? 2u : 0u) << "seed " << seed;
+            EXPECT_NEAR(modes->noise_factor, 1, 0.25);
+            EXPECT_NE(modes->message.english().find("1 measures that the other parts contradict"),
+                      std::string::npos)
+                << modes->message.english();
+        }
 }
 
 TEST(ElasticModes, RefusesWhatIsNoLearningSet) {

@@ -208,16 +208,20 @@ TEST(OnPart, AfterABumpItSaysWhetherTheSensorMoved) {
     EXPECT_TRUE(struck->bump->moved);
     ASSERT_EQ(struck->status, OnPartStatus::ok) << struck->report.judgement.reason.english();
     EXPECT_LT(working_mm(*struck, cell.mounting()), 4 * struck->working_sigma_mm);
-    // Passes that alone would not do: with the old place they only say that nothing shows.
-    options.prior->flange_from_sensor = cell.mounting();
-    Motion stiff;
-    stiff.turn_deg = 0;
-    const auto few = cell.passes({cell.straight()}, 4, 0, stiff, kUsual, 0.005);
-    const auto checked = calibrate_on_part(few, options);
-    ASSERT_TRUE(checked && checked->bump);
-    EXPECT_FALSE(checked->bump->moved);
-    ASSERT_EQ(checked->status, OnPartStatus::ok) << checked->report.judgement.reason.english();
-    EXPECT_LT(working_mm(*checked, cell.mounting()), 0.15);
+    // Passes under one attitude cannot tell, moved or not: neither is the old place handed on.
+    for (const double blow_mm : {0.0, 3.0}) {
+        options.prior->flange_from_sensor = cell.mounting() * Eigen::Translation3d(blow_mm, -blow_mm, 0);
+        Motion stiff;
+        stiff.turn_deg = 0;
+        const auto few = cell.passes({cell.straight()}, 4, 0, stiff, kUsual, 0.005);
+        const auto checked = calibrate_on_part(few, options);
+        ASSERT_TRUE(checked && checked->bump);
+        EXPECT_FALSE(checked->bump->moved);
+        EXPECT_LT(checked->bump->directions, 3);
+        EXPECT_EQ(checked->status, OnPartStatus::undetermined);
+        EXPECT_THAT(checked->report.judgement.reason.english(), HasSubstr("cannot tell"));
+        EXPECT_FALSE(checked->advice.empty());
+    }
 }
 
 // Two ways to the same mounting, each with its own sigma: chi squared of six, the 99.9 % point.
@@ -400,6 +404,40 @@ TEST(OnPart, ALatencyThatNothingShowsIsNotStated) {
     }
     EXPECT_GT(ok, 0);
     EXPECT_LT(known, ok);
+}
+
+// The latency of passes along one straight edge is idle. Held or free, with the robot stated or not, a blow of millimetres
+// shows, and a place that is as good as its covariance says stands.
+TEST(OnPart, AlongOneStraightEdgeABlowIsNeverPassedOver) {
+    const RobotRepeatability stated{0.01, 0.003 * Cell::kDeg};
+    int still_moved = 0, still = 0;
+    for (unsigned seed = 1; seed <= 4; ++seed)
+        for (const bool robot : {false, true}) {
+            const auto passes = rigid_passes(seed, 8, 1, kRigidMounting, 0.008);
+            std::mt19937 random(seed + 100);
+            std::normal_distribution<double> n(0, 1);
+            Vector6 off;
+            for (int i = 0; i < 6; ++i) off(i) = n(random) * (i < 3 ? 0.1 : 0.05 * Cell::kDeg);
+            Vector6 blow;
+            for (int i = 0; i < 6; ++i) blow(i) = n(random) * (i < 3 ? 1.5 : 0.5 * Cell::kDeg);
+            OnPartOptions options;
+            if (robot) options.robot = stated;
+            options.prior = MountingPrior{retract(kRigidMounting, off), old_covariance(0.1, 0.05)};
+            const auto honest = calibrate_on_part(passes, options);
+            ASSERT_TRUE(honest && honest->bump) << seed;
+            still_moved += honest->bump->moved, ++still;
+            if (honest->status == OnPartStatus::ok) {
+                EXPECT_LT(working_mm(*honest, kRigidMounting), 4 * honest->working_sigma_mm) << seed;
+            }
+            options.prior->flange_from_sensor = retract(kRigidMounting, off + blow);
+            const auto struck = calibrate_on_part(passes, options);
+            ASSERT_TRUE(struck && struck->bump) << seed;
+            EXPECT_TRUE(struck->bump->moved) << seed << " chi squared " << struck->bump->chi_squared;
+            if (struck->status == OnPartStatus::ok) {
+                EXPECT_LT(working_mm(*struck, kRigidMounting), 4 * struck->working_sigma_mm) << seed;
+            }
+        }
+    EXPECT_LE(still_moved, 1) << "of " << still;
 }
 
 }  // namespace

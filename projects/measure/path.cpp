@@ -144,6 +144,13 @@ void judge(const Project& project, const std::vector<const Region*>& regions,
     }
 }
 
+// The gate asks whether the rigid frame fits all spots, which the frame of a bent part does not: where it refuses for nothing
+// else and the modes explain what the spots show, it is the path that is right, and its own limits judge it.
+bool bends_alone(const RegionRecord& record) {
+    return record.modes && record.modes->acted && record.refusals.size() == 1 &&
+           !record.correction->consistent;
+}
+
 }  // namespace
 
 Expected<PathAnswer> correct_application_path(const Project& setup, const RunRecord& run,
@@ -172,7 +179,7 @@ Expected<PathAnswer> correct_application_path(const Project& setup, const RunRec
                          [&](const RegionRecord& record) { return record.region_id == region.id; });
         const bool solved = found != run.regions.end() && found->correction &&
                             found->correction->status == CorrectionStatus::ok;
-        if (!solved || !found->gate_passed) {
+        if (!solved || (!found->gate_passed && !bends_alone(*found))) {
             Text why = found == run.regions.end() ? Text("it was not measured in this run")
                        : found->refusals.empty()  ? Text("it was not solved")
                                                   : found->refusals.front();

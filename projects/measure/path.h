@@ -2,7 +2,8 @@
 // The application path of a project, corrected point by point by what a run found (core/correction/
 // path_blend.h). Nothing is sent to a robot: the result is a path for the application program, to be run in
 // the taught frame. What stands between a number and a robot holds here as well:
-//   - every region that the path uses must have passed the safety gate in that run;
+//   - every region that the path uses must have passed the safety gate in that run, or have been refused for nothing but spots
+//     that contradict a rigid frame while its modes acted;
 //   - at every point, the displacement's translation and angle and the point's sigma must keep the limits of
 //     its region; within a transition the limits go over from one region's to the next's with the blend.
 // Where a region's modes acted in the run (run.h), the joint solution is found again from the run's spots, the path is

@@ -188,6 +188,14 @@ json run_json(const RunRecord& run) {
         if (r.offset)
             regions.back()["offset"] = {{"version", r.offset->version},
                                         {"offset_mm", vector_json(r.offset->offset_mm)}};
+        if (r.modes)
+            regions.back()["modes"] = {{"acted", r.modes->acted},
+                                       {"why", r.modes->why},
+                                       {"text", said_of(*r.modes)},
+                                       {"amplitudes_mm", r.modes->amplitudes_mm},
+                                       {"sigma_mm", r.modes->sigma_mm},
+                                       {"largest_added_mm", r.modes->largest_added_mm},
+                                       {"probability", r.modes->probability}};
         if (r.drift)
             regions.back()["drift"] = {
                 {"verdict", to_string(r.drift->verdict)}, {"text", r.drift->text},

@@ -146,6 +146,22 @@ TEST(RegionModes, AreLearntKeptSwitchedAndBendThePath) {
     const double with = off_across(run, project), without = off_across(rigid, project);
     EXPECT_LT(2 * with, without) << with << " " << without;
 
+    // The gate refuses the rigid frame of so bent a part, the path of all points is what it is for; what else is refused holds.
+    RunRecord gated = run;
+    ASSERT_FALSE(gated.regions[0].correction->consistent);
+    gated.regions[0].gate_passed = false;
+    gated.regions[0].refusals = {"the spots contradict each other"};
+    EXPECT_EQ(off_across(gated, project), with);
+    gated.regions[0].refusals.push_back("the part has changed");
+    const auto stale = correct_application_path(project, gated, path, PathFrame::workobject, {60, true});
+    ASSERT_TRUE(stale);
+    EXPECT_FALSE(stale->ok());
+    gated.regions[0].refusals.pop_back();
+    gated.regions[0].modes->acted = false;
+    const auto unknown = correct_application_path(project, gated, path, PathFrame::workobject, {60, true});
+    ASSERT_TRUE(unknown);
+    EXPECT_FALSE(unknown->ok());
+
     // Its limit refuses the path.
     Project tight = project;
     tight.elastic[0].most_added_mm = 0.01;

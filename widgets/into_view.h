@@ -6,11 +6,18 @@
 
 namespace seamwright {
 
-// Scrolls the areas that `widget` lies in, once the layout has found its place.
+// Scrolls the areas that `widget` lies in, once the layout has found its place: until all of it is seen where it has room (Qt
+// itself would do with a list's current row).
 inline void bring_into_view(QWidget* widget) {
     QTimer::singleShot(0, widget, [widget] {
         for (QWidget* up = widget->parentWidget(); up; up = up->parentWidget())
-            if (auto* area = qobject_cast<QScrollArea*>(up)) area->ensureWidgetVisible(widget);
+            if (auto* area = qobject_cast<QScrollArea*>(up);
+                area && area->widget() && area->widget()->isAncestorOf(widget)) {
+                area->ensureWidgetVisible(widget);
+                const QRect all(widget->mapTo(area->widget(), QPoint(0, 0)), widget->size());
+                if (all.height() <= area->viewport()->height())
+                    area->ensureVisible(all.left(), all.center().y(), 0, (all.height() + 1) / 2);
+            }
     });
 }
 

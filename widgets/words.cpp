@@ -90,6 +90,7 @@ constexpr auto kWords = std::to_array<Word>({
     // units that are words
     {"deg", QT_TRANSLATE_NOOP("Words", "deg")},
     {"us", QT_TRANSLATE_NOOP("Words", "us")},
+    {"days", QT_TRANSLATE_NOOP("Words", "days")},
     // choices
     {"chessboard", QT_TRANSLATE_NOOP("Words", "chessboard")},
     {"circles", QT_TRANSLATE_NOOP("Words", "circles")},

@@ -23,11 +23,16 @@
 
 #include "core/evaluation/statistics.h"
 #include "projects/model/evidence.h"
+#include "projects/proof/zero_shift.h"
 #include "projects/station/station.h"
 
 namespace seamwright {
 
 inline constexpr const char* kKnownShiftPrefix = "known shift ";  // parts of its runs: "known shift X +5 mm"
+// Parts of the proofs' runs, also of those that no evidence names: of a proof that was cancelled.
+inline bool is_part_of_proof(std::string_view part_id) {
+    return part_id.starts_with(kZeroShiftPrefix) || part_id.starts_with(kKnownShiftPrefix);
+}
 
 struct ShiftGrid {
     double range_mm = 10, step_mm = 2.5;    // -range .. range; 0 itself is the zero shift

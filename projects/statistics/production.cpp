@@ -54,9 +54,7 @@ RunPurposes::RunPurposes(const std::vector<Evidence>& evidence) : proofs_(proof_
 }
 
 RunPurpose RunPurposes::of(const RunValues& run) const {
-    if (proofs_.contains(run.number) || run.part_id.starts_with(kZeroShiftPrefix) ||
-        run.part_id.starts_with(kKnownShiftPrefix))
-        return RunPurpose::proof;
+    if (proofs_.contains(run.number) || is_part_of_proof(run.part_id)) return RunPurpose::proof;
     // A study only measures: what was pushed is a part that went on.
     if (run.push) return RunPurpose::production;
     if (rehung_.contains(run.part_id)) return RunPurpose::study;

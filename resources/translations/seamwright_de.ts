@@ -1780,6 +1780,10 @@
         <source>ASCII</source>
         <translation>ASCII</translation>
     </message>
+    <message>
+        <source>days</source>
+        <translation>Tage</translation>
+    </message>
 </context>
 <context>
     <name>main</name>
@@ -5425,6 +5429,10 @@ A %5  B %6  C %7 Grad</translation>
         <source>%1 (of another part type, not taught on this one)</source>
         <translation>%1 (von einem anderen Teiletyp, an diesem nicht eingelernt)</translation>
     </message>
+    <message>
+        <source>No spot is ticked below: tick those that move with this region.</source>
+        <translation>Unten ist keine Messstelle angehakt: die anhaken, die sich mit diesem Korrekturbereich bewegen.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::ResidualBars</name>
@@ -5821,10 +5829,6 @@ ausgelassen</translation>
         <translation>weggelassen, widerspricht um %1 mm</translation>
     </message>
     <message>
-        <source>run %1</source>
-        <translation>Lauf %1</translation>
-    </message>
-    <message>
         <source>The project was changed while the push waited for an answer: nothing was pushed. Measure again.</source>
         <translation>Das Projekt wurde geändert, während die Übertragung auf eine Antwort wartete: nichts wurde übertragen. Neu messen.</translation>
     </message>
@@ -6100,6 +6104,14 @@ ausgelassen</translation>
         <source>Its reference does not lie at its feature: measure it again.</source>
         <translation>Ihre Referenz liegt nicht an ihrem Merkmal: neu messen.</translation>
     </message>
+    <message>
+        <source>Its pass is recorded, not accepted.</source>
+        <translation>Ihre Überfahrt ist aufgenommen, nicht angenommen.</translation>
+    </message>
+    <message>
+        <source>Accept</source>
+        <translation>Annehmen</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::SpotLightPanel</name>
@@ -6191,14 +6203,6 @@ ausgelassen</translation>
         <translation>keine Referenz</translation>
     </message>
     <message>
-        <source>taught</source>
-        <translation>eingelernt</translation>
-    </message>
-    <message>
-        <source>taught, edge recorded</source>
-        <translation>eingelernt, Kante aufgenommen</translation>
-    </message>
-    <message>
         <source>Spots (%1)</source>
         <translation>Messstellen (%1)</translation>
     </message>
@@ -6220,6 +6224,14 @@ ausgelassen</translation>
     <message>
         <source>of another part type</source>
         <translation>von anderem Teiletyp</translation>
+    </message>
+    <message>
+        <source>taught, pass open</source>
+        <translation>eingelernt, Überfahrt offen</translation>
+    </message>
+    <message>
+        <source>taught, pass accepted</source>
+        <translation>eingelernt, Überfahrt angenommen</translation>
     </message>
 </context>
 <context>
@@ -6434,6 +6446,22 @@ ausgelassen</translation>
     <message>
         <source>Stop the measuring; nothing is pushed</source>
         <translation>Das Messen abbrechen; nichts wird übertragen</translation>
+    </message>
+    <message>
+        <source>run %1</source>
+        <translation>Lauf %1</translation>
+    </message>
+    <message>
+        <source>zero shift %1</source>
+        <translation>Nullverschiebung %1</translation>
+    </message>
+    <message>
+        <source>known shift %1</source>
+        <translation>bekannte Verschiebung %1</translation>
+    </message>
+    <message>
+        <source>and</source>
+        <translation>und</translation>
     </message>
 </context>
 <context>

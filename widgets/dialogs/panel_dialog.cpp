@@ -19,6 +19,7 @@ namespace seamwright {
 namespace {
 
 constexpr int kPanelDialogWidth = 1180, kPlacesHeight = 210, kMotionWidth = 400;
+constexpr int kPlacesBesideQuestion = 110, kLongestQuestion = 220;
 
 Tone tone_of(RunStatus status) {
     switch (status) {
@@ -137,12 +138,18 @@ QFrame* PanelDialog::make_question() {
     auto* box = new QVBoxLayout(asking_);
     question_ = make_text({});
     question_->setObjectName("panel_question");
-    box->addWidget(question_);
+    // What is longer than its room is scrolled to; the keys never are.
+    question_area_ = new QScrollArea;
+    question_area_->setWidgetResizable(true);
+    question_area_->setFrameShape(QFrame::NoFrame);
+    question_area_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    question_area_->setFocusPolicy(Qt::NoFocus);
+    question_area_->setWidget(question_);
+    box->addWidget(question_area_, 1);
     yes_ = make_button("panel_yes", "push", tr("Yes"), tr("It is done"), [this] { answer(true); });
     no_ = make_button("panel_no", "stop", tr("No"), tr("Nothing is sent to the robot"),
                       [this] { answer(false); });
     box->addLayout(make_row({yes_, no_}));
-    box->addStretch(1);
     asking_->hide();
     return asking_;
 }
@@ -298,6 +305,7 @@ void PanelDialog::show_deeds() {
     // The question takes the plots' place: what it is about stays in view.
     heads_->setVisible(!asked);
     moves_->parentWidget()->setVisible(!asked);
+    fit_question(asked);
     const QPushButton* next = free ? next_deed() : nullptr;
     for (QPushButton* b : {file_, teach_, measure_, fit_}) {
         if (b == next) b->setDefault(true);
@@ -306,6 +314,15 @@ void PanelDialog::show_deeds() {
         b->style()->unpolish(b);
         b->style()->polish(b);
     }
+}
+
+// The places give their room to what is asked; the window grows by what is still missing.
+void PanelDialog::fit_question(bool asked) {
+    places_->setMinimumHeight(asked ? kPlacesBesideQuestion : kPlacesHeight);
+    if (!asked) return;
+    layout()->activate();
+    question_area_->setMinimumHeight(
+        std::min(kLongestQuestion, question_->heightForWidth(question_area_->viewport()->width())));
 }
 
 void PanelDialog::show_standing() {

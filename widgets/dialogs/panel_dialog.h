@@ -10,6 +10,7 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QProgressBar>
+#include <QScrollArea>
 #include <QTableWidget>
 #include <functional>
 #include <memory>
@@ -46,6 +47,7 @@ class PanelDialog : public QDialog {
     void forget();         // what was measured
     void show_standing();  // deeds and words as the project, the devices and what is under way allow
     void show_deeds();
+    void fit_question(bool asked);
     void show_sensitivity();
     QString next_words() const;  // what to do now
     QPushButton* next_deed() const;
@@ -72,6 +74,7 @@ class PanelDialog : public QDialog {
     QLabel *verdict_, *question_, *sensitivity_, *beside_;
     QProgressBar* progress_;
     QFrame* asking_;
+    QScrollArea* question_area_;
     QTableWidget *places_, *motion_;
     HeadsPlot* heads_;
     MovesPlot* moves_;

@@ -23,6 +23,7 @@ struct ParameterEditor::Impl {
     QComboBox* choice = nullptr;
     QLabel* problem = nullptr;
     QString reason;
+    std::string of;  // what the value belongs to
 };
 
 namespace {
@@ -128,9 +129,19 @@ void ParameterEditor::set_value(double value) {
         impl_->choice->setCurrentIndex(static_cast<int>(impl_->value));
         return;
     }
-    impl_->line->setText(text_from_number(impl_->value, info.decimals));
+    // What is marked stays marked where the number is the same.
+    const QString text = text_from_number(impl_->value, info.decimals);
+    if (impl_->line->text() != text) impl_->line->setText(text);
     impl_->line->setModified(false);
     impl_->problem->hide();
+}
+
+void ParameterEditor::refresh(double value, const std::string& of) {
+    const bool typing = impl_->line && impl_->line->isModified() && impl_->of == of;
+    impl_->of = of;
+    if (!typing) return set_value(value);
+    if (!std::isfinite(value)) value = impl_->info.default_value;
+    impl_->value = std::clamp(value, impl_->info.minimum, impl_->info.maximum);
 }
 
 bool ParameterEditor::eventFilter(QObject* watched, QEvent* event) {

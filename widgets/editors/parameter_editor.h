@@ -29,6 +29,8 @@ class ParameterEditor : public QWidget {
     void set_name(const QString& name);  // in place of the word for info().name
     double value() const;
     void set_value(double value);  // no signal; clamped into the range (NaN: the default)
+    // The same, of the thing that is shown: what is being typed stays as long as that is the same one.
+    void refresh(double value, const std::string& of);
     bool refused() const;
     QString reason() const;  // why; empty when accepted
 

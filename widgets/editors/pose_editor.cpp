@@ -58,6 +58,7 @@ struct PoseEditor::Impl {
     QLabel* problem = nullptr;
     QString reason;
     bool modified = false;
+    std::string of;  // what the pose belongs to
 
     void show();
     bool take(PoseEditor& editor, const QString& text);
@@ -76,7 +77,9 @@ void PoseEditor::Impl::show() {
         if (!used) continue;
         names[i]->setText(fields[i].name);
         units[i]->setText(fields[i].unit);
-        lines[i]->setText(numbers.value(static_cast<int>(i)));
+        // What is marked stays marked where the number is the same.
+        if (const QString text = numbers.value(static_cast<int>(i)); lines[i]->text() != text)
+            lines[i]->setText(text);
         lines[i]->setAccessibleName(fields[i].name + " " + fields[i].unit);
         lines[i]->setToolTip(PoseEditor::tr("%1 in %2. A whole pose can be pasted here.")
                                  .arg(fields[i].name, notation_name(notation)));
@@ -86,7 +89,7 @@ void PoseEditor::Impl::show() {
         QString text;
         for (int row = 0; row < 4; ++row) text += numbers.mid(row * 4, 4).join("  ") + (row < 3 ? "\n" : "");
         const QSignalBlocker quiet(matrix);
-        matrix->setPlainText(text);
+        if (matrix->toPlainText() != text) matrix->setPlainText(text);
     }
     modified = false;
     reason.clear();
@@ -205,6 +208,13 @@ QString PoseEditor::reason() const {
 void PoseEditor::set_pose(const Pose& pose) {
     impl_->pose = pose;
     impl_->show();
+}
+
+void PoseEditor::refresh(const Pose& pose, const std::string& of) {
+    const bool typing = (impl_->modified || refused()) && impl_->of == of;
+    impl_->of = of;
+    impl_->pose = pose;
+    if (!typing) impl_->show();
 }
 
 bool PoseEditor::eventFilter(QObject* watched, QEvent* event) {

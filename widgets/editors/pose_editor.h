@@ -37,6 +37,8 @@ class PoseEditor : public QWidget {
     PoseNotation notation() const;
     Pose pose() const;
     void set_pose(const Pose& pose);  // no signal
+    // The same, of the thing that is shown: what is being typed stays as long as that is the same one.
+    void refresh(const Pose& pose, const std::string& of);
     bool refused() const;
     QString reason() const;
 

@@ -31,6 +31,9 @@ constexpr int kSettingSigns = 22, kIndent_px = 14;
 // As a field shows it; empty for what is absent.
 QString text_of(const json& value) {
     if (value.is_null()) return {};
+    constexpr std::size_t kSigns = 10;  // that a field has room for; what is not edited keeps all its digits
+    if (value.is_number_float() && value.dump().size() > kSigns)
+        return QString::number(value.get<double>(), 'g', 6);
     return QString::fromStdString(value.is_string() ? value.get<std::string>() : value.dump());
 }
 
@@ -147,6 +150,7 @@ struct SettingsEditor::Impl {
         row.problem->hide();
         if (row.text) {
             row.text->setText(value ? text_of(*value) : QString());
+            row.text->setCursorPosition(0);  // the beginning of what is longer than the field
             row.text->setModified(false);
         } else if (row.choice) {
             const QSignalBlocker quiet(row.choice);

@@ -62,6 +62,7 @@ AlignPage::AlignPage(Desk& desk, const Views& views)
     connect(&desk_.worker(), &StationWorker::passed, this,
             [this](const std::shared_ptr<const JudgedPass>& pass) {
                 pass_ = std::make_shared<JudgedPass>(*pass);
+                accepted_ = false;
                 show_result();
             });
     connect(views_.align, &AlignView::jitter_dragged, this, &AlignPage::judge);
@@ -112,6 +113,8 @@ void AlignPage::do_deed(SpotDeed deed) {
             return desk_.selection().select_spot(desk_.project().spots.front().id);
         case SpotDeed::pass:
             return start();
+        case SpotDeed::accept:
+            return accept();
         case SpotDeed::next_spot:
             return desk_.selection().select_spot(next_undone(desk_, desk_.selection().spot())->id);
         case SpotDeed::next_step:
@@ -138,6 +141,7 @@ void AlignPage::judge(double jitter_mm) {
 
 void AlignPage::show_result() {
     accept_->setEnabled(here() && pass_->acceptable());
+    spot_head_->set_pass_waits(here() && pass_->acceptable() && !accepted_);
     adopt_->setEnabled(here() && pass_->result.status == AlignmentStatus::drifting);
     if (!here()) {
         const bool accepted = spot() && spot()->curve;
@@ -193,7 +197,8 @@ void AlignPage::accept() {
         return;
     }
     if (!done(desk_.edit(*after, tr("alignment")))) return;
-    done(desk_.record({0, {}, 0, frozen_contour(after->id, pass_->result, pass_->options)}));
+    accepted_ = done(desk_.record({0, {}, 0, frozen_contour(after->id, pass_->result, pass_->options)}));
+    show_result();
 }
 
 void AlignPage::adopt() {

@@ -35,6 +35,7 @@ class AlignPage : public StepPage {
     QPushButton *start_, *accept_, *adopt_;
     QLabel *verdict_, *numbers_;
     std::shared_ptr<JudgedPass> pass_;
+    bool accepted_ = false;  // this pass
 };
 
 }  // namespace seamwright

@@ -208,7 +208,7 @@ QWidget* CellPage::due() {
 void CellPage::refresh() {
     const Project& p = desk_.project();
     for (std::size_t i = 0; i < requirements_.size(); ++i)
-        requirements_[i]->set_value(requirement_fields()[i].get(p.requirements));
+        requirements_[i]->refresh(requirement_fields()[i].get(p.requirements), subject());
     const StationState& s = desk_.station();
     QVector<QStringList> rows;
     for (const SensorSetup& sensor : p.sensors) {
@@ -241,7 +241,7 @@ void CellPage::refresh() {
             ? tr("No mesh. Everything works without one; the 3D view is empty then.")
             : tr("%1, from %2")
                   .arg(QString::fromStdString(p.part.name), QString::fromStdString(p.part.mesh_source)));
-    if (!workobject_->hasFocus()) workobject_->set_pose(p.part.base_from_workobject);
+    workobject_->refresh(p.part.base_from_workobject, subject());
     simulated_->setVisible(std::any_of(p.sensors.begin(), p.sensors.end(),
                                        [](const SensorSetup& x) { return is_simulated_cell(x.driver); }));
 }

@@ -43,7 +43,7 @@ ProvePage::ProvePage(Desk& desk, const Views& views)
           desk, views, Step::prove,
           tr("Before anything is corrected: the part as taught reads zero, known shifts are found again, "
              "and the run works without this screen.")) {
-    box().addWidget(make_progress());
+    make_head().addWidget(make_progress());  // in sight wherever the page stands
     make_zero_shift();
     make_known_shift();
     make_checklist();
@@ -57,8 +57,9 @@ ProvePage::ProvePage(Desk& desk, const Views& views)
         if (isVisible()) enable();
     });
     connect(&desk_.worker(), &StationWorker::place_part, this, &ProvePage::ask_to_place);
-    connect(&desk_.worker(), &StationWorker::busy_changed, this, [this](bool busy) {
+    connect(&desk_.worker(), &StationWorker::busy_changed, this, [this, enable](bool busy) {
         if (!busy) place_->hide();
+        enable();
     });
 }
 
@@ -352,7 +353,7 @@ void ProvePage::draw_known_shift(const KnownShift& proof) {
     for (const ShiftTest& test : proof.tests)
         for (const ShiftOutcome& o : test.regions) {
             if (o.region_id != id) continue;
-            labels.push_back(q(shift_name(test, proof)));
+            labels.push_back(shown_shift(q(shift_name(test, proof))));
             mean.values.push_back(o.deviations_mm.empty() ? std::nan("") : o.mean_abs_mm);
             for (std::size_t i = 0; i < o.deviations_mm.size(); ++i)
                 axes[i % 3].values.push_back(o.deviations_mm[i]);

@@ -249,7 +249,18 @@ const Region* RegionsPage::region() const {
 }
 
 QWidget* RegionsPage::due() {
-    return desk_.project().regions.empty() ? findChild<QWidget*>("add_region") : list_;
+    const std::vector<Region>& regions = desk_.project().regions;
+    if (regions.empty()) return findChild<QWidget*>("add_region");
+    const auto bare =
+        std::find_if(regions.begin(), regions.end(), [](const Region& r) { return r.spot_ids.empty(); });
+    if (bare == regions.end() || spots_->count() == 0) return list_;
+    desk_.selection().select_region(bare->id);
+    refresh();
+    if (spots_->currentRow() < 0) {
+        const QSignalBlocker quiet(spots_);
+        spots_->setCurrentRow(0);
+    }
+    return spots_;
 }
 
 void RegionsPage::refresh() {
@@ -287,15 +298,23 @@ void RegionsPage::refresh() {
         if (scroll >= 0) spots_->setCurrentRow(scroll);
         for (std::size_t i = 0; i < 6; ++i) free_[i]->setChecked(r->free[i]);
         if (!frame_->hasFocus()) frame_->setText(QString::fromStdString(r->frame_name));
-        frame_pose_->set_pose(r->base_from_frame);
-        for (std::size_t i = 0; i < editors_.size(); ++i) editors_[i]->set_value(region_fields()[i].get(*r));
+        frame_pose_->refresh(r->base_from_frame, subject(r->id));
+        for (std::size_t i = 0; i < editors_.size(); ++i)
+            editors_[i]->refresh(region_fields()[i].get(*r), subject(r->id));
         show_plan(*r);
-        budget_->show_region(p, r);
+        budget_->show_region(p, r->spot_ids.empty() ? nullptr : r);
     }
     filling_ = false;
 }
 
 void RegionsPage::show_plan(const Region& r) {
+    if (r.spot_ids.empty()) {
+        set_verdict(*verdict_, tr("No spot is ticked below: tick those that move with this region."),
+                    Tone::attention);
+        set_rows(*plan_, {});
+        advice_->clear();
+        return;
+    }
     const auto forecast = forecast_region(desk_.project(), r);
     if (!forecast) {
         set_verdict(*verdict_, shown(forecast.error().what), Tone::attention);

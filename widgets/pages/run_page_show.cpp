@@ -7,14 +7,13 @@
 #include <QDateTime>
 #include <QFileDialog>
 #include <QHeaderView>
-#include <QRegularExpression>
 #include <cmath>
 #include <set>
 
 #include "devices/exchange/files.h"
 #include "devices/exchange/tables/csv_table.h"
 #include "projects/measure/measure.h"
-#include "projects/proof/zero_shift.h"
+#include "projects/proof/known_shift.h"
 #include "widgets/into_view.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
@@ -60,14 +59,6 @@ QString release_text(Release release) {
             break;
     }
     return {};
-}
-
-// Stored in English where nobody named it.
-QString shown_part(const std::string& id) {
-    static const QRegularExpression unnamed(QStringLiteral("^run (\\d+)$"));
-    const QString name = QString::fromStdString(id);
-    const auto match = unnamed.match(name);
-    return match.hasMatch() ? RunPage::tr("run %1").arg(match.captured(1)) : name;
 }
 
 Tone tone_of(RunStatus status) {
@@ -245,8 +236,7 @@ void RunPage::show_history() {
     charted_.clear();
     for (const RunSummary& s : summaries_) {
         if (charted_.size() == kCharted) break;
-        if (!proofs.contains(s.number) && !s.part_id.starts_with(kZeroShiftPrefix))
-            charted_.push_back(s.number);
+        if (!proofs.contains(s.number) && !is_part_of_proof(s.part_id)) charted_.push_back(s.number);
     }
     std::reverse(charted_.begin(), charted_.end());
     int refused = 0;

@@ -59,6 +59,7 @@ void TeachPage::do_deed(SpotDeed deed) {
         case SpotDeed::confirm:
             return confirm_->click();
         case SpotDeed::pass:
+        case SpotDeed::accept:
             return emit step_wanted(Step::align);
         case SpotDeed::next_spot:
             return desk_.selection().select_spot(next_undone(desk_, desk_.selection().spot())->id);
@@ -160,12 +161,9 @@ void TeachPage::refresh() {
     required_->setChecked(s->required);
     stop_->setChecked(s->stop_at_trigger);
     if (const RobotSetup* r = find_robot(desk_.project(), s->robot_id);
-        r && !pose_->isAncestorOf(focusWidget())) {
+        r && !pose_->isAncestorOf(focusWidget()))
         pose_->set_notation(notation_of_brand(r->identity.brand));
-        pose_->set_pose(s->base_from_flange);
-    } else {
-        pose_->set_pose(s->base_from_flange);
-    }
+    pose_->refresh(s->base_from_flange, subject(s->id));
     take_->setEnabled(connected);
     go_->setEnabled(desk_.can_move(s->robot_id));
     add_via_->setEnabled(connected);
@@ -208,7 +206,7 @@ void TeachPage::refresh() {
                                   .arg(number(s->reference_mm.x(), 3), number(s->reference_mm.z(), 3))
                                   .arg(s->reference_profile.size()));
     for (std::size_t i = 0; i < field_editors_.size(); ++i)
-        field_editors_[i]->set_value(spot_fields()[i].get(*s));
+        field_editors_[i]->refresh(spot_fields()[i].get(*s), subject(s->id));
 }
 
 void TeachPage::show_parameters(const Spot& s) {
@@ -234,7 +232,7 @@ void TeachPage::show_parameters(const Spot& s) {
         }
     }
     for (ParameterEditor* e : parameter_editors_)
-        e->set_value(parameter(s.feature.parameters, kind->parameters, e->info().name));
+        e->refresh(parameter(s.feature.parameters, kind->parameters, e->info().name), subject(s.id));
 }
 
 void TeachPage::forget_tool() {

@@ -33,7 +33,7 @@ Expected<void> check_parts(const LiveStudyOptions& o) {
         if (part.empty() || is_too_long(part) || part != utf8_text(part))
             return usage_error(Text("\"{}\" names no part", utf8_text(part)), "--parts",
                                Text("give a name of at most {} signs", kLongestId));
-        if (part.starts_with(kZeroShiftPrefix) || part.starts_with(kKnownShiftPrefix))
+        if (is_part_of_proof(part))
             return usage_error(Text("\"{}\" is a name of the proofs' own", part), "--parts",
                                "name the part otherwise");
         if (!seen.insert(part).second)

@@ -32,10 +32,10 @@ class Furniture : public testing::Test {
         studio.reset();
         std::filesystem::remove_all(folder);
     }
-    void start(bool connect) {
+    void start(bool connect, const QString& language = "en") {
         studio.reset();
         StudioOptions o;
-        o.language = "en";
+        o.language = language;
         o.theme = "light";
         o.settings = path("settings.ini");
         o.data = path("");

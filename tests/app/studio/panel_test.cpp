@@ -157,6 +157,21 @@ class PanelWindow : public testing::Test {
             desk().edit_project([](Project& p) { p.panel_jobs[0].limits.translation_mm = 0.5; }, "limit"));
         return d;
     }
+    // All words of the question stand free, and its keys.
+    static void reads_question(PanelDialog& d) {
+        QTest::qWait(50);
+        const auto* places = d.findChild<QTableWidget*>("panel_places");
+        const QRect table(places->mapTo(&d, QPoint()), places->size());
+        const auto* words = d.findChild<QLabel*>("panel_question");
+        EXPECT_GE(words->visibleRegion().boundingRect().height(), words->heightForWidth(words->width()));
+        for (const QWidget* w : std::initializer_list<const QWidget*>{words, button(d, "panel_yes")}) {
+            const QRect at(w->mapTo(&d, QPoint()), w->size());
+            EXPECT_FALSE(table.intersects(at)) << w->objectName().toStdString();
+            EXPECT_TRUE(d.rect().contains(at)) << w->objectName().toStdString();
+        }
+        EXPECT_GE(button(d, "panel_yes")->height(), 32);
+        EXPECT_LE(d.height(), 760);
+    }
     RunRecord last_run() {
         const auto runs = desk().runs();
         EXPECT_TRUE(runs && !runs->empty());
@@ -205,6 +220,7 @@ TEST_F(PanelWindow, LeadsFromTeachingToAPanelInPlace) {
     EXPECT_THAT(word(d, "panel_question"), HasSubstr("panel now"));
     EXPECT_THAT(button(d, "panel_yes")->text().toStdString(), HasSubstr("Push panel to R1"));
     EXPECT_FALSE(button(d, "panel_fit")->isEnabled());
+    reads_question(d);
     picture(d, "question");
     click(d, "panel_no");
     ASSERT_TRUE(wait([&] { return !under_way(d); }));
@@ -244,6 +260,7 @@ TEST_F(PanelWindow, LearnsServesAndTakesTheFirstFrameBackWhenItIsCancelled) {
     click(d, "panel_learn");
     ASSERT_TRUE(asked(d));
     EXPECT_THAT(word(d, "panel_question"), HasSubstr("12 small moves"));
+    reads_question(d);
     click(d, "panel_no");
     EXPECT_FALSE(under_way(d));
     click(d, "panel_learn");
@@ -450,6 +467,7 @@ TEST_F(PanelWindow, IsReadAndReachedOnBothScreensInBothLanguages) {
         displace();
         click(d, "panel_servo");
         ASSERT_TRUE(wait([&] { return asked(d); })) << word(d);
+        reads_question(d);
         for (const QSize size : {QSize(1280, 740), QSize(1900, 1000)}) {
             d.resize(size);
             picture(d, "asking_" + std::string(language) + "_" + std::to_string(size.width()));

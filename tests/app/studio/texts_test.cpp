@@ -216,6 +216,10 @@ TEST(Texts, WhatTheLayersBelowSayHasAWord) {
     }
     for (const auto& field : spot_fields()) setting(field.info);
     for (const auto& field : region_fields()) setting(field.info);
+    for (const auto& field : requirement_fields())
+        EXPECT_TRUE(field.info.unit.empty() || field.info.unit == "mm" || has_word(field.info.unit))
+            << field.info.unit << " is missing in widgets/words.cpp";
+    sentence("simulated gripper");
     const std::function<void(const SettingTable&)> of_driver = [&](const SettingTable& table) {
         for (const SettingInfo& info : table) {
             EXPECT_TRUE(has_word(info.name)) << info.name << " is missing in widgets/words.cpp";

@@ -269,7 +269,7 @@ void AcceptPage::refresh_study() {
 void AcceptPage::refresh_requirements() {
     const AcceptanceRequirements& r = desk_.project().requirements.acceptance;
     for (std::size_t i = 0; i < requirements_.size(); ++i)
-        requirements_[i]->set_value(acceptance_fields()[i].get(r));
+        requirements_[i]->refresh(acceptance_fields()[i].get(r), subject());
     int variant = variant_->count() - 1;
     for (int i = 0; i + 1 < variant_->count(); ++i)
         if (variant_->itemText(i) == tr("Cg = %1 T / (%2 s)").arg(r.cg_share).arg(r.cg_width)) variant = i;
@@ -323,7 +323,7 @@ void AcceptPage::draw_runs(const std::vector<StudyValue>& values, const QString&
     std::vector<QString> labels;
     TrendSeries series{tr("value"), {}};
     for (const StudyValue& v : values) {
-        labels.push_back(q(v.part) + QChar(' ') + QString::number(v.run));
+        labels.push_back(shown_part(v.part) + QChar(' ') + QString::number(v.run));
         series.values.push_back(v.value_mm);
     }
     views_.trend->set_data(title, QStringLiteral("mm"), labels, {series}, limits);

@@ -148,11 +148,11 @@ void GuidedPage::refresh_settings() {
         }
     } else {
         for (std::size_t i = 0; i < s.method().settings.size(); ++i)
-            editors[static_cast<int>(i)]->set_value(setting(s.method().settings[i], s.state().settings));
+            editors[static_cast<int>(i)]->refresh(setting(s.method().settings[i], s.state().settings),
+                                                  s.folder().string());
     }
     nominal_holder_->setVisible(s.method().robot && s.method().use == AnswerUse::sensor);
-    if (const auto mounting = calibration_.mounting(); mounting && !nominal_->refused())
-        nominal_->set_pose(*mounting);
+    if (const auto mounting = calibration_.mounting()) nominal_->refresh(*mounting, s.folder().string());
     refresh_base();
 }
 
@@ -356,8 +356,8 @@ void GuidedPage::refresh_verdict() {
         const auto it = robot.find(key);
         return it != robot.end() && it->is_number() ? it->get<double>() : 0.0;
     };
-    if (!robot_mm_->refused()) robot_mm_->set_value(stated("sigma_mm"));
-    if (!robot_deg_->refused()) robot_deg_->set_value(stated("sigma_deg"));
+    robot_mm_->refresh(stated("sigma_mm"), s.folder().string());
+    robot_deg_->refresh(stated("sigma_deg"), s.folder().string());
     robot_deg_->setEnabled(stated("sigma_mm") > 0);
     parameters_->setVisible(solution && !solution->report.parameters.empty());
     if (!solution) {

@@ -67,6 +67,12 @@ SpotHead::SpotHead(Desk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
     });
 }
 
+void SpotHead::set_pass_waits(bool waits) {
+    if (waits == pass_waits_) return;
+    pass_waits_ = waits;
+    refresh();
+}
+
 void SpotHead::refresh() {
     const Project& project = desk_.project();
     const Spot* s = find_spot(project, desk_.selection().spot());
@@ -74,6 +80,7 @@ void SpotHead::refresh() {
     go_->setVisible(s);
     go_->setEnabled(s && desk_.can_move(s->robot_id) && !busy);
     shown_ = next_deed(desk_, desk_.selection().spot());
+    if (shown_ == SpotDeed::pass && pass_waits_) shown_ = SpotDeed::accept;
     name_->setText(s ? tr("Spot %1").arg(QString::fromStdString(s->id)) : tr("No spot"));
     bool may = !busy;
     switch (shown_) {
@@ -111,6 +118,10 @@ void SpotHead::refresh() {
             state_->setText(tr("Its reference is measured, its pass is not."));
             deed_->setText(tr("Run entry -> exit"));
             may = may && connected;
+            break;
+        case SpotDeed::accept:
+            state_->setText(tr("Its pass is recorded, not accepted."));
+            deed_->setText(tr("Accept"));
             break;
         case SpotDeed::next_spot:
             state_->setText(tr("Taught and aligned."));

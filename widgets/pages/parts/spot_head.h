@@ -16,6 +16,7 @@ enum class SpotDeed {
     reference,  // to be measured
     confirm,    // its reference is from the drawing
     pass,       // to be recorded and accepted
+    accept,     // a recorded one that nobody has accepted yet
     next_spot,  // another one that is not done
     next_step   // all spots are done
 };
@@ -31,6 +32,8 @@ class SpotHead : public QWidget {
   public:
     explicit SpotHead(Desk& desk, QWidget* parent = nullptr);
     void refresh();
+    // A pass of the spot was recorded that can be accepted.
+    void set_pass_waits(bool waits);
 
   signals:
     void wanted(seamwright::SpotDeed deed);
@@ -40,6 +43,7 @@ class SpotHead : public QWidget {
     QLabel *name_, *state_;
     QPushButton *deed_, *go_;
     SpotDeed shown_ = SpotDeed::add;
+    bool pass_waits_ = false;
 };
 
 }  // namespace seamwright

@@ -3,6 +3,7 @@
 #include <QHeaderView>
 
 #include "projects/measure/measure.h"
+#include "projects/proof/checklist.h"
 #include "widgets/style.h"
 
 namespace seamwright {
@@ -56,13 +57,13 @@ void SpotTree::refresh() {
         item->setSizeHint(0, {0, style::kTargetPx});
         return item;
     };
-    const auto state_of = [](const Spot& s) {
+    const auto state_of = [&](const Spot& s) {
         return !s.enabled                                          ? tr("disabled")
                : s.reference_profile.size() == 0                   ? tr("no reference")
                : s.reference_state == ReferenceState::from_drawing ? tr("from the drawing")
                : s.reference_state == ReferenceState::from_type    ? tr("of another part type")
-               : !s.curve                                          ? tr("taught")
-                                                                   : tr("taught, edge recorded");
+               : frozen_open(p, desk_.facts(), s)                  ? tr("taught, pass open")
+                                                                   : tr("taught, pass accepted");
     };
     const auto owned = [](const std::string& type_id, const QString& state) {
         return type_id.empty() ? state : QString::fromStdString(type_id) + ": " + state;

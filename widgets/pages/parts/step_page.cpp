@@ -1,10 +1,13 @@
 #include "widgets/pages/parts/step_page.h"
 
+#include <QRegularExpression>
 #include <QTimer>
 
+#include "projects/proof/known_shift.h"
 #include "widgets/into_view.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
+#include "widgets/words.h"
 
 namespace seamwright {
 
@@ -89,6 +92,24 @@ bool StepPage::done(const Expected<void>& result) {
 bool StepPage::done_or_shown(const Expected<void>& result) {
     if (!done(result)) later();
     return result.has_value();
+}
+
+QString StepPage::shown_part(const std::string& id) {
+    static const QRegularExpression unnamed(QStringLiteral("^run (\\d+)$"));
+    const QString name = QString::fromStdString(id);
+    if (const auto match = unnamed.match(name); match.hasMatch()) return tr("run %1").arg(match.captured(1));
+    const auto behind = [&](std::string_view prefix) {
+        return name.mid(static_cast<qsizetype>(prefix.size()));
+    };
+    if (id.starts_with(kZeroShiftPrefix)) return tr("zero shift %1").arg(behind(kZeroShiftPrefix));
+    if (id.starts_with(kKnownShiftPrefix))
+        return tr("known shift %1").arg(shown_shift(behind(kKnownShiftPrefix)));
+    return name;
+}
+
+QString StepPage::shown_shift(QString name) {
+    return name.replace(QStringLiteral(" deg"), QChar(0x20) + shown_word("deg"))
+        .replace(QStringLiteral(" and "), QChar(0x20) + tr("and") + QChar(0x20));
 }
 
 QWidget* StepPage::make_progress() {

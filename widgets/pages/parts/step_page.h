@@ -41,6 +41,12 @@ class StepPage : public QWidget {
     bool done(const Expected<void>& result);
     // The same, and what was ticked or chosen shows again what is.
     bool done_or_shown(const Expected<void>& result);
+    // A part's name in the window's language, where no person gave it: "run 3", "zero shift 1".
+    static QString shown_part(const std::string& id);
+    // "Y +5 mm and +0.5 deg".
+    static QString shown_shift(QString name);
+    // What an editor's refresh() is about: the open project, or a part of it.
+    std::string subject(const std::string& id = {}) const { return desk_.path().string() + '\n' + id; }
     // Start, cancel, and how far it is; shown while the worker is busy.
     QWidget* make_progress();
 

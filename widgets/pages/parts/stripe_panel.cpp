@@ -31,7 +31,9 @@ void StripePanel::refresh(const SensorSetup* sensor) {
     setVisible(sensor != nullptr);
     if (!sensor) return;
     sensor_id_ = sensor->id;
-    for (std::size_t i = 0; i < editors_.size(); ++i) editors_[i]->set_value(sensor_fields()[i].get(*sensor));
+    const std::string of = desk_.path().string() + '\n' + sensor_id_;
+    for (std::size_t i = 0; i < editors_.size(); ++i)
+        editors_[i]->refresh(sensor_fields()[i].get(*sensor), of);
 }
 
 }  // namespace seamwright

@@ -36,6 +36,9 @@ ViewFeeder::ViewFeeder(Desk& desk, Views views, QObject* parent)
     connect(&desk_, &Desk::opened, this, [this] {
         shifts_.clear();
         views_.align->clear();
+        views_.residuals->set_data({});
+        views_.trend->set_data({}, QStringLiteral("mm"), {}, {}, {});
+        views_.histogram->set_data({}, QStringLiteral("mm"), std::vector<TrendSeries>(), {});
     });
     connect(&desk_, &Desk::station_changed, this, &ViewFeeder::robot);
     connect(&desk_.selection(), &Selection::changed, this, &ViewFeeder::selected);

@@ -15,8 +15,8 @@ inline void bring_into_view(QWidget* widget) {
                 area && area->widget() && area->widget()->isAncestorOf(widget)) {
                 area->ensureWidgetVisible(widget);
                 const QRect all(widget->mapTo(area->widget(), QPoint(0, 0)), widget->size());
-                if (all.height() <= area->viewport()->height())
-                    area->ensureVisible(all.left(), all.center().y(), 0, (all.height() + 1) / 2);
+                if (constexpr int kRim = 2; all.height() + 2 * kRim <= area->viewport()->height())
+                    area->ensureVisible(all.left(), all.center().y(), 0, all.height() / 2 + kRim);
             }
     });
 }

@@ -72,7 +72,7 @@ class Judge {
             type1_study(mm, *reference, {s.tolerance_mm, s.share, s.width, s.required, s.required_cgk});
         if (!made) return tl::unexpected(made.error());
         a_.type1_part = part;
-        a_.type1 = std::move(*made);
+        a_.type1 = *made;
         const std::optional<StudyForecast>& forecast = a_.source.forecast;
         // Of another part than the unmoved one neither the place nor the reference is the forecast's.
         if (!forecast || !(forecast->type1_s_mm > 0) || !a_.source.unmoved_part_is(part)) return {};

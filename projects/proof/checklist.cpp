@@ -1,11 +1,9 @@
 #include "projects/proof/checklist.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
-#include "core/geometry/notation.h"
 #include "devices/capture/capture.h"
 #include "devices/registry.h"
 #include "projects/drift/drift_point.h"
@@ -225,41 +223,6 @@ std::optional<CheckItem> outdated(CheckStep step, const Evidence& e, const Proje
     const Text changed = then == facts.setups.end() ? Text("the project") : changed_since(*then->second, p);
     if (changed.empty()) return std::nullopt;
     return stale(step, Text("{} was changed since the proof of {}", changed, date_of(e.utc)));
-}
-
-// How far the part lies off where one rigid displacement tells what all regions read, mm: then it is the part that has
-// moved, not what was taught of a region. The rest may be as large as a bend of the part.
-std::optional<double> displaced_as_one_mm(const Project& p, const ZeroShift& zero) {
-    constexpr double kShareOfBend = 0.05;
-    double worst = 0;
-    std::vector<Eigen::Vector3d> taught, found;
-    for (const ZeroShiftRegion& r : zero.regions) {
-        const auto region = std::find_if(p.regions.begin(), p.regions.end(),
-                                         [&](const Region& one) { return one.id == r.region_id; });
-        if (region == p.regions.end()) return std::nullopt;
-        const Pose moved = make_pose(rotation_from_kuka({r.mean[3], r.mean[4], r.mean[5]}),
-                                     {r.mean[0], r.mean[1], r.mean[2]});
-        double farthest = 0;
-        for (const Eigen::Vector3d& point : reference_points(p, *region)) {
-            taught.push_back(point);
-            found.push_back(moved * point);
-            farthest = std::max(farthest, (found.back() - point).norm());
-        }
-        if (farthest <= p.requirements.sigma3_mm) return std::nullopt;
-        worst = std::max(worst, farthest);
-    }
-    if (taught.empty()) return std::nullopt;
-    const auto points = static_cast<Eigen::Index>(taught.size());
-    Eigen::Matrix3Xd from(3, points), to(3, points);
-    for (Eigen::Index i = 0; i < points; ++i) {
-        from.col(i) = taught[static_cast<std::size_t>(i)];
-        to.col(i) = found[static_cast<std::size_t>(i)];
-    }
-    const Eigen::Matrix4d whole = Eigen::umeyama(from, to, false);
-    const double most = std::max(p.requirements.sigma3_mm, kShareOfBend * worst);
-    for (std::size_t i = 0; i < taught.size(); ++i)
-        if (!(((whole * taught[i].homogeneous()).head<3>() - found[i]).norm() <= most)) return std::nullopt;
-    return worst;
 }
 
 Text put_back(const Project& p, double off_mm) {

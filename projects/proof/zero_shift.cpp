@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -89,6 +90,39 @@ Expected<ZeroShift> measure_zero_shift(Station& station, const ZeroShiftOptions&
     ZeroShift zero = summarise_zero_shift(setup, runs);
     SEAM_OK(station.file().append_evidence({0, {}, 0, zero}, setup));
     return zero;
+}
+
+std::optional<double> displaced_as_one_mm(const Project& p, const ZeroShift& zero) {
+    constexpr double kShareOfBend = 0.05;
+    double worst = 0;
+    std::vector<Eigen::Vector3d> taught, found;
+    for (const ZeroShiftRegion& r : zero.regions) {
+        const auto region = std::find_if(p.regions.begin(), p.regions.end(),
+                                         [&](const Region& one) { return one.id == r.region_id; });
+        if (region == p.regions.end()) return std::nullopt;
+        const Pose moved = make_pose(rotation_from_kuka({r.mean[3], r.mean[4], r.mean[5]}),
+                                     {r.mean[0], r.mean[1], r.mean[2]});
+        double farthest = 0;
+        for (const Eigen::Vector3d& point : reference_points(p, *region)) {
+            taught.push_back(point);
+            found.push_back(moved * point);
+            farthest = std::max(farthest, (found.back() - point).norm());
+        }
+        if (farthest <= p.requirements.sigma3_mm) return std::nullopt;
+        worst = std::max(worst, farthest);
+    }
+    if (taught.empty()) return std::nullopt;
+    const auto points = static_cast<Eigen::Index>(taught.size());
+    Eigen::Matrix3Xd from(3, points), to(3, points);
+    for (Eigen::Index i = 0; i < points; ++i) {
+        from.col(i) = taught[static_cast<std::size_t>(i)];
+        to.col(i) = found[static_cast<std::size_t>(i)];
+    }
+    const Eigen::Matrix4d whole = Eigen::umeyama(from, to, false);
+    const double most = std::max(p.requirements.sigma3_mm, kShareOfBend * worst);
+    for (std::size_t i = 0; i < taught.size(); ++i)
+        if (!(((whole * taught[i].homogeneous()).head<3>() - found[i]).norm() <= most)) return std::nullopt;
+    return worst;
 }
 
 }  // namespace seamwright

@@ -4,7 +4,9 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
+#include <vector>
 
 #include "projects/model/evidence.h"
 #include "projects/station/station.h"
@@ -29,6 +31,11 @@ Expected<ZeroShift> measure_zero_shift(Station& station, const ZeroShiftOptions&
 
 // Of runs made with `setup`; regions in its order, those that were never corrected left out.
 ZeroShift summarise_zero_shift(const Project& setup, const std::vector<RunRecord>& runs);
+
+// How far the part lies off, mm, where one rigid displacement tells what all regions read: then it is the part that has moved,
+// not what was taught of a region. The rest may be as large as a bend of the part. Nothing where a region reads zero or the
+// regions disagree.
+std::optional<double> displaced_as_one_mm(const Project& project, const ZeroShift& zero);
 
 // The reference points of a region's enabled, calibrated spots on the part as taught, work object, mm.
 std::vector<Eigen::Vector3d> reference_points(const Project& project, const Region& region);

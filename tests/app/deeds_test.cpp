@@ -274,6 +274,7 @@ TEST_F(Deeds, ADriftIsToldWithItsCureAndAdoptedPassesFreeze) {
     // The edge of the door bends, and so does its direction: a quarter of a degree.
     EXPECT_NEAR(std::abs(drift["yaw_deg"].get<double>()), 3, 0.4);
     EXPECT_FALSE(drift["cure"].get<std::string>().empty());
+    EXPECT_NEAR(drift["cure_about_z_deg"].get<double>(), -drift["yaw_deg"].get<double>(), 1e-9);
     EXPECT_FALSE(find_spot(stored(), "T2")->curve);
     EXPECT_EQ(answer({"align", file.string(), "T2", "--live"}, 1)["cure"], drift["cure"]);
 
@@ -326,6 +327,20 @@ TEST_F(Deeds, StripeTakesAllOrNothing) {
     refused({"stripe", "A", "--set", "min_width_px=90"}, "max_width_px");
     refused({"stripe", "A", "--set", "lookahead=9"}, "min_segment_points");
     refused({"stripe", "A", "--set", "noise_mm=nan"}, "noise_mm");
+}
+
+// --- track
+
+TEST_F(Deeds, TrackRefusesImagesOfAnotherSizeThanTheCalibrations) {
+    ASSERT_TRUE(project.calibrations[0].model);
+    ASSERT_GT(project.calibrations[0].model->camera.width, 160);
+    std::string pgm = "P5\n160 120\n255\n" + std::string(160 * 120, '\x08');
+    for (int u = 0; u < 160; ++u) pgm[pgm.size() - 160 * 60 + static_cast<std::size_t>(u)] = '\x7f';
+    const std::string image = write("frame.pgm", pgm);
+    expect_refused({"track", image, "--columns", "--calibration", file.string(), "--calibration-id",
+                    project.calibrations[0].id},
+                   "160 x 120 pixels");
+    answer({"track", image, "--columns"}, 0);
 }
 
 }  // namespace

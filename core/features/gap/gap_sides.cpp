@@ -298,7 +298,8 @@ GapSides::Found GapSides::two_cores(int least, double panel_mm, Core& before, Co
 }
 
 // The raw point behind which the first part can have no more points: the widest hole between the surfaces or
-// within the end of one of them, for the filter lets a surface go on with the other one's rim. -1: the contour goes on from one to the other.
+// within the end of one of them, for the filter lets a surface go on with the other one's rim. -1: the contour goes on from
+// one to the other.
 int GapSides::break_between(const Core& before, const Core& after) const {
     const double noise = std::max(noise_of(before.first, before.last), noise_of(after.first, after.last));
     // Where single returns may be missing the contour goes on behind them, seen from either side.

@@ -51,8 +51,8 @@ struct GapPart {
 class GapSides {
   public:
     enum class Found { both, no_points, one_surface, unbroken, ambiguous };
-    // Pieces shorter than `least` points are no surface; one longer than twice `panel_mm` is no ground. Left and right by x. Allocates nothing after the
-    // first profile of a size.
+    // Pieces shorter than `least` points are no surface; one longer than twice `panel_mm` is no ground. Left and right by x.
+    // Allocates nothing after the first profile of a size.
     Found find(const Profile& profile, const FeatureWindow& window, int least, double panel_mm);
 
     const GapPart& left() const { return parts_[0]; }

@@ -184,19 +184,23 @@ struct Unseen {
     bool lost = false;       // profiles were recorded there
     bool uncovered = false;  // hardly any were
 };
-Unseen unseen_within(const std::vector<TravelOffset>& offsets, double jitter_mm) {
+Unseen unseen_within(const std::vector<TravelOffset>& offsets, const AlignmentOptions& options) {
     constexpr double kLost = 0.1, kUncovered = 0.9, kUncoveredEnd = 0.25;  // of the jitter
     constexpr double kByChance = 0.05;
     constexpr double kSteps = 2.5;  // of the usual step, or the pass is as sparse as that
+    const double jitter_mm = options.jitter_mm;
     std::vector<const TravelOffset*> by_travel;
     for (const TravelOffset& o : offsets)
-        if (std::isfinite(o.travel_mm)) by_travel.push_back(&o);
+        if (std::abs(o.travel_mm) <= options.window_mm) by_travel.push_back(&o);
     std::stable_sort(by_travel.begin(), by_travel.end(),
                      [](auto a, auto b) { return a->travel_mm < b->travel_mm; });
     std::vector<double> steps;
-    double last = -kInfinity, all_lost = 0;
+    double last = -kInfinity;
+    int stretches = 0;  // in which profiles are lost, of one as of many
+    bool before_ok = true;
     for (const TravelOffset* o : by_travel) {
-        all_lost += !o->ok;
+        stretches += before_ok && !o->ok;
+        before_ok = o->ok;
         if (!o->ok) continue;
         if (o->travel_mm > last && std::isfinite(last)) steps.push_back(o->travel_mm - last);
         last = o->travel_mm;
@@ -210,7 +214,7 @@ Unseen unseen_within(const std::vector<TravelOffset>& offsets, double jitter_mm)
         const bool end = !std::isfinite(before) || !std::isfinite(after);
         // As many in a row as the others that are lost here and there would hardly make by chance.
         const double others = static_cast<double>(by_travel.size()) - lost;
-        const double by_chance = others * std::pow((all_lost - lost) / std::max(1.0, others), lost);
+        const double by_chance = others * std::pow((stretches - 1) / std::max(1.0, others), lost);
         const bool is_lost = lost >= 2 && by_chance < kByChance && to - from > kLost * jitter_mm;
         const bool uncovered = to - from > (end ? kUncoveredEnd : kUncovered) * jitter_mm &&
                                (end || after - before > kSteps * step);
@@ -452,7 +456,7 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
     state_error(drift, options.jitter_mm, result);
     const bool lost = state_shape(*best, pass, options, result);
     const StandOff off = left_over(drift, options.jitter_mm);
-    const Unseen unseen = unseen_within(result.offsets, options.jitter_mm);
+    const Unseen unseen = unseen_within(result.offsets, options);
     result.shape_change_mm = std::max({result.shape_change_mm, off.most_mm, apart_mm});
     const bool changes = lost || unseen.lost || result.shape_change_mm > options.tolerance_mm;
     result.status = judged(result, options.tolerance_mm, changes, unseen.uncovered);

@@ -377,6 +377,10 @@ TEST(Alignment, WhatStandsOffWithinTheJitterIsNotFrozen) {
         {"wave in x", [](double y) { return Eigen::Vector2d(0.3 * std::sin(y * EIGEN_PI / 4), 0); }},
         {"long wave in x", [](double y) { return Eigen::Vector2d(0.15 * std::sin(y * EIGEN_PI / 6), 0); }},
         {"wave in z", [](double y) { return Eigen::Vector2d(0, 0.2 * std::sin(y * EIGEN_PI / 5)); }},
+        {"lost here, and at the end",
+         [](double y) {
+             return (y >= 2 && y <= 4) || y > 14 ? std::nullopt : std::optional<Eigen::Vector2d>({0, 0});
+         }},
         {"ends at 2 mm",
          [](double y) {
              return y > 2 ? std::nullopt : std::optional<Eigen::Vector2d>({0, 0});
@@ -391,6 +395,12 @@ TEST(Alignment, WhatStandsOffWithinTheJitterIsNotFrozen) {
             EXPECT_EQ(r.status, AlignmentStatus::shape_changes) << name << " " << noise << " " << r.cure;
             EXPECT_THAT(r.cure, HasSubstr("within the jitter")) << name;
         }
+    // What lies beyond the window says nothing of what is lost within.
+    const auto gone = [](double y) {
+        return y >= 2 && y <= 4 ? std::nullopt : std::optional<Eigen::Vector2d>({0, 0});
+    };
+    Rng long_rng(35);
+    EXPECT_EQ(checked(moved_rim(gone, 0.03, long_rng, -60, 60), o).status, AlignmentStatus::shape_changes);
     for (int seed = 0; seed < 100; ++seed) {
         Rng rng(100 + static_cast<unsigned>(seed));
         const AlignmentResult r = checked(moved_rim(still, 0.02 + 0.0005 * seed, rng), o);

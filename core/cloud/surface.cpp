@@ -24,7 +24,7 @@ std::uint64_t edge_key(int a, int b) {
 
 // Nearest point of a triangle and where it lies: 0..2 the edge from that corner, 3..5 a corner, -1 inside (Ericson,
 // Real-Time Collision Detection, 5.1.5).
-Eigen::Vector3d nearest_in(const Eigen::Vector3d* c, const Eigen::Vector3d& p, int& place,
+Eigen::Vector3d nearest_in(const std::array<Eigen::Vector3d, 3>& c, const Eigen::Vector3d& p, int& place,
                            Eigen::Vector3d& weights) {
     const Eigen::Vector3d &a = c[0], &b = c[1], &d = c[2];
     const Eigen::Vector3d ab = b - a, ac = d - a, ap = p - a;

@@ -7,6 +7,7 @@
 // axis that the round does not tell. A border is an edge of one triangle alone: the sheet of a mesh without thickness
 // ends there.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -42,10 +43,10 @@ class Surface {
 
   private:
     struct Face {
-        Eigen::Vector3d corner[3];
+        std::array<Eigen::Vector3d, 3> corner;
         Eigen::Vector3d normal;
-        Eigen::Vector3d smooth[3];  // at the corners
-        std::uint8_t border = 0;    // bit k: the edge from corner k to k + 1; bit 3 + k: corner k
+        std::array<Eigen::Vector3d, 3> smooth;  // at the corners
+        std::uint8_t border = 0;                // bit k: the edge from corner k to k + 1; bit 3 + k: corner k
         int triangle = -1;
     };
     struct Node {

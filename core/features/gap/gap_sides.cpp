@@ -356,21 +356,25 @@ double GapSides::noise_of(int first, int last) const {
 int GapSides::walked(int from, int step, int stop, double noise, GapPart& part) const {
     const int w = std::clamp(static_cast<int>(std::ceil(kSlopeNoise * noise / pitch_)), 1, 40);
     const double steeper = kMostDrop * w / (std::sqrt(w + 1.0) - 1);
+    const auto left_out = [&](int i) { return !std::binary_search(raw_.begin(), raw_.end(), i); };
     trail_.clear();
-    for (int i = from, n = 0; n <= w && i >= 0 && i < static_cast<int>(x_.size()); i -= step, ++n)
+    // A slope that a point beside the contour turns over lets the walk end at once.
+    for (int i = from, n = 0; n <= w && i >= 0 && i < static_cast<int>(x_.size()); i -= step) {
+        if (i != from && left_out(i)) continue;
         trail_.push_back(i);
+        ++n;
+    }
     std::reverse(trail_.begin(), trail_.end());
     const auto lines = [&](int a, int b) { return std::max(1.0, std::abs(x_[b] - x_[a]) / pitch_); };
+    const auto before = [&](std::size_t back) {
+        return trail_[trail_.size() - 1 - std::min(back, trail_.size() - 1)];
+    };
     const double gate = kNoiseGate * std::sqrt(2.0) * noise;
-    double entered = 0;  // height of the step to the last point
-    int sparks = 0;
-    bool flattens = false;
-    for (int i = from + step; i != stop; i += step) {
-        const int last = trail_.back();
-        const int base = trail_[trail_.size() - 1 - std::min<std::size_t>(std::size_t(w), trail_.size() - 1)];
+    enum class Step { on, flatter, off };
+    // From `last`, with the slope since `base`, to i.
+    const auto judged = [&](int base, int last, int i) {
         const double slope = base == last ? 0 : (z_[last] - z_[base]) / lines(base, last);
         const double n = lines(last, i), dz = z_[i] - z_[last], tolerance = pitch_ * n + gate;
-        if (n > kMostLines) break;
         const double flat = kFlattens * slope * n, steep = steeper * slope * n;
         const bool falls = slope < 0;
         const double least = falls ? steep - tolerance : flat - gate - 0.5 * pitch_ * n;
@@ -381,14 +385,31 @@ int GapSides::walked(int from, int step, int stop, double noise, GapPart& part) 
             const double on = (z_[next] - z_[i]) / lines(i, next);
             return on * dz > 0 && std::abs(on) > pitch_ + gate;
         };
-        if ((dz >= least && dz <= most) || ((falls ? dz < least : dz > most || dz < least) && cut_face())) {
+        if ((dz >= least && dz <= most) || ((falls ? dz < least : dz > most || dz < least) && cut_face()))
+            return Step::on;
+        return (falls ? dz > most : dz < least) ? Step::flatter : Step::off;
+    };
+    // Beside the contour: the filter left it out, and the next goes on without it alone.
+    const auto is_spark = [&](int i) {
+        const int next = i + step;
+        return next != stop && left_out(i) && judged(before(w), before(0), next) == Step::on &&
+               judged(before(w - 1), i, next) != Step::on;
+    };
+    double entered = 0;  // height of the step to the last point
+    int sparks = 0;
+    bool flattens = false;
+    for (int i = from + step; i != stop; i += step) {
+        const int last = trail_.back();
+        if (lines(last, i) > kMostLines) break;
+        const Step taken = judged(before(w), last, i);
+        if (taken == Step::on && !is_spark(i)) {
             trail_.push_back(i);
-            entered = std::abs(dz);
+            entered = std::abs(z_[i] - z_[last]);
             sparks = 0;
             flattens = false;
             continue;
         }
-        if (sparks == 0) flattens = falls ? dz > most : dz < least;
+        if (sparks == 0) flattens = taken == Step::flatter;
         if (++sparks > kSparks) break;
     }
     if (flattens && trail_.back() != from && entered > pitch_ + gate) trail_.pop_back();

@@ -234,6 +234,39 @@ TEST(GapWidth, ReturnsThatAreMissingInAPanelAreNoEdge) {
     }
 }
 
+// One return below the contour, where the rim grows steep, must not end the part there.
+TEST(GapWidth, ASparkOnTheRimIsNoEdge) {
+    constexpr double kPitch = 0.055, kGap = 4;
+    std::mt19937_64 engine(41);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> uniform(0, 1);
+    const Outline left = rim(1);
+    Outline right = left;
+    for (auto& q : right) q.x() = kGap - q.x();
+    const GapScene scene{{left, right}};
+    double worst = 0;
+    for (int trial = 0; trial < 30; ++trial) {
+        Profile p;
+        for (double x = -12 + kPitch * uniform(engine); x < 12 + kGap; x += kPitch) {
+            int sheet = 0;
+            p.x_mm.push_back(x);
+            p.z_mm.push_back(scene.height(x, sheet) + 0.035 * normal(engine));
+        }
+        smooth(p.z_mm, 3);
+        for (std::size_t i = 1; i < p.x_mm.size(); ++i) {
+            if (p.x_mm[i] < kGap + 3 * kPitch || p.x_mm[i] > kGap + 0.6) continue;
+            Profile with = p;
+            with.z_mm[i] = with.z_mm[i - 1] - 0.015;
+            EXPECT_TRUE(filter_profile(with, {}));
+            with.segment[i] = kOutlier;
+            const GapFlush g = GapFlushGauge({}).measure(with);
+            ASSERT_EQ(g.status, GapFlushStatus::ok) << g.message;
+            worst = std::max(worst, std::abs(g.gap_mm - kGap));
+        }
+    }
+    EXPECT_LT(worst, 3 * kPitch);
+}
+
 TEST(GapWidth, IsRefusedWhereTheGroundCannotBeToldFromAPanel) {
     Profile p = over_ground(2.5);
     EXPECT_TRUE(filter_profile(p, {}));

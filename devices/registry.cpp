@@ -208,12 +208,26 @@ Expected<std::vector<std::filesystem::path>> write_program_files(const std::file
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);
     if (failed) return file_error(Text("the folder cannot be made: {}", failed.message()), folder.string());
-    std::vector<std::filesystem::path> written;
+    // A controller with one file of the old program and one of the new does neither: all stand written before the first
+    // takes its name.
+    std::vector<std::filesystem::path> written, beside;
+    Expected<void> done;
     for (const ProgramFile& f : files) {
         written.push_back(folder / f.name);
-        SEAM_OK(write_text_file(written.back(), f.text));
+        beside.push_back(folder / (f.name + ".new"));
+        if (std::filesystem::is_directory(written.back(), failed))
+            done = file_error("is a folder, not a file", written.back().string());
+        if (done) done = check_replaceable(written.back());
+        if (done) done = write_text_file(beside.back(), f.text);
+        if (!done) break;
     }
-    return written;
+    for (std::size_t i = 0; done && i < written.size(); ++i) {
+        std::filesystem::rename(beside[i], behind_links(written[i]), failed);
+        if (failed) done = file_error(Text("cannot be written ({})", failed.message()), written[i].string());
+    }
+    if (done) return written;
+    for (const auto& path : beside) std::filesystem::remove(path, failed);
+    return tl::unexpected(done.error());
 }
 
 }  // namespace seamwright

@@ -86,7 +86,7 @@ Expected<std::vector<ProgramFile>> write_robot_program(const std::string& brand,
 Expected<std::vector<ProgramFile>> write_robot_path(const std::string& brand,
                                                     const PathProgramRequest& request);
 
-// Makes the folder and writes them all; where they are. Error (file).
+// Makes the folder and writes all of them or none; where they are. Error (file, input).
 Expected<std::vector<std::filesystem::path>> write_program_files(const std::filesystem::path& folder,
                                                                  const std::vector<ProgramFile>& files);
 

@@ -11,6 +11,11 @@ void Handshake::hear(const LineWords& words, Time now) {
     words_ = words;
     if (!options_.line_starts || silent(now)) return;
     if (back && phase_ == Phase::done && !shown_ && !words.start) result_stays_ = true;
+    if (!words.start) other_called_ = false;
+    if (back && words.start && words.part != called_) {
+        other_called_ = phase_ == Phase::busy;
+        if (phase_ == Phase::done) not_followed(now);
+    }
     const bool waits = phase_ == Phase::idle || (phase_ == Phase::done && result_stays_);
     if (rises && waits) {
         phase_ = Phase::called;
@@ -33,18 +38,21 @@ bool Handshake::silent(Time now) const {
 
 void Handshake::advance(const LineState& state, Time now) {
     if (silent(now) && (phase_ == Phase::idle || phase_ == Phase::called)) phase_ = Phase::unseen;
-    if (phase_ == Phase::called && now - called_at_ > options_.call_timeout) {
-        phase_ = Phase::done;
-        done_at_ = now;
-        not_followed_ = true;
-        result_stays_ = shown_ = false;
-    }
+    if (phase_ == Phase::called && now - called_at_ > options_.call_timeout) not_followed(now);
     if (phase_ == Phase::busy && state.results != results_) {
         phase_ = Phase::done;
         done_at_ = now;
         result_stays_ = !words_.start;
         shown_ = false;
+        if (other_called_) not_followed(now);
     }
+}
+
+void Handshake::not_followed(Time now) {
+    phase_ = Phase::done;
+    done_at_ = now;
+    not_followed_ = true;
+    result_stays_ = shown_ = other_called_ = false;
 }
 
 std::optional<LineCall> Handshake::take(const LineState& state, Time now) {
@@ -52,7 +60,7 @@ std::optional<LineCall> Handshake::take(const LineState& state, Time now) {
     if (phase_ != Phase::called) return std::nullopt;
     phase_ = Phase::busy;
     results_ = state.results;
-    not_followed_ = false;
+    not_followed_ = other_called_ = false;
     return LineCall{
         called_, std::chrono::duration_cast<std::chrono::nanoseconds>(called_at_.time_since_epoch()).count()};
 }

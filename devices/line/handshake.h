@@ -9,7 +9,8 @@
 // A start that is 1 when the line is first heard, or after it was lost, starts nothing: it has to be seen at 0.
 // Dropped before busy: the call is withdrawn. Dropped while busy: the part is given up (LineLink::given_up), its result
 // stays `done` until the next start, which may come at once: ready stands beside it. So does that of a part which ended
-// while the line was away, where its start has gone meanwhile. Not taken in call_timeout: done with not_measured. Not dropped in drop_timeout: an
+// while the line was away, where its start has gone meanwhile. A line that comes back with start 1 and another part than it
+// called for has given that one up: its call for the other is answered by not_measured, never by the former's result. Not taken in call_timeout: done with not_measured. Not dropped in drop_timeout: an
 // alarm, and nothing starts until it is.
 // The line is silent when its heartbeat has not changed for heartbeat_timeout (0: not watched): a waiting call is
 // withdrawn, nothing starts, an alarm.
@@ -48,12 +49,13 @@ class Handshake {
     void lost();                                  // the line is away
     std::optional<LineCall> take(const LineState& state, Time now);
     HandshakeBits bits(const LineState& state, Time now);
-    bool given_up() const { return phase_ == Phase::busy && !words_.start; }
+    bool given_up() const { return phase_ == Phase::busy && (!words_.start || other_called_); }
     const LinePart& part() const { return words_.part; }
 
   private:
     enum class Phase { unseen, idle, called, busy, done };
     void advance(const LineState& state, Time now);
+    void not_followed(Time now);
     bool silent(Time now) const;
 
     HandshakeOptions options_;
@@ -66,6 +68,7 @@ class Handshake {
     bool not_followed_ = false;  // the call ended without the station
     bool result_stays_ = false;  // start went before the result came
     bool shown_ = false;         // `done`, to a line that was there
+    bool other_called_ = false;  // while the line was away, and the part before is still measured
 };
 
 }  // namespace seamwright

@@ -19,7 +19,8 @@ A start that is 1 when the station begins, when the connection comes back or aft
 0 first. Start 0 before busy withdraws the call. Start 0 while busy gives the part up: what is measured is measured to its
 end, but no robot is waited for any longer; done stays until the next start, and ready 1 beside it says that this may come.
 A part that ends while the connection is away is answered when it is back: by step 4 where start is still 1, else as one
-that was given up. A call that the station cannot follow in call_timeout_ms ends with done 1, result 8 and alarm 30.
+that was given up. Where start is 1 for another part than the one that was called, that one is given up, and the call for
+the other ends as one that the station cannot follow: with done 1, result 8 and alarm 30, as after call_timeout_ms.
 
 Setting "start": "robot" (where nothing is set). The robot's call starts the part; what stands in part_type, paint,
 part_number and part_name at that instant goes with it. start is not looked at; busy and done follow the station.

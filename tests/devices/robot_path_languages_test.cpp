@@ -1,7 +1,10 @@
 // Robot programs as their manuals write them, read back as paths: what each language means.
 #include <gmock/gmock.h>
 
+#include "devices/exchange/files.h"
+#include "devices/registry.h"
 #include "tests/devices/robot_programs.h"
+#include "tests/devices/temporary_folder.h"
 
 namespace seamwright {
 namespace {
@@ -355,6 +358,31 @@ TEST(ProgramPath, AptPointsAxesCirclesAndUnits) {
     EXPECT_EQ(catia.count(LineKind::not_understood), 0U);
     EXPECT_LT((catia.points.back().frame_from_tool.translation() - Eigen::Vector3d(5, 10, 0)).norm(), 1e-9);
     for (const ProgramPoint& p : catia.points) EXPECT_LE(p.frame_from_tool.translation().x(), 5 + 1e-9);
+}
+
+// ---- their files
+
+TEST(ProgramFiles, AllAreWrittenOrNone) {
+    const TemporaryFolder folder;
+    const auto out = folder.path() / "krc" / "R1";
+    const auto text = [&](const char* name) { return read_text_file(out / name).value_or("none"); };
+    ASSERT_TRUE(write_program_files(out, {{"a.src", "old a"}, {"b.dat", "old b"}}));
+    std::filesystem::create_directory(out / "c.src");
+    const auto refused =
+        write_program_files(out, {{"a.src", "new a"}, {"b.dat", "new b"}, {"c.src", "new c"}});
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().sentence(), HasSubstr("c.src"));
+    EXPECT_EQ(text("a.src"), "old a");
+    EXPECT_EQ(text("b.dat"), "old b");
+    const auto files = [&] { return std::distance(std::filesystem::directory_iterator(out), {}); };
+    EXPECT_EQ(files(), 3) << "nothing is left beside them";
+    std::filesystem::remove(out / "c.src");
+    const auto written = write_program_files(out, {{"a.src", "new a"}, {"c.src", "new c"}});
+    ASSERT_TRUE(written) << written.error().sentence();
+    EXPECT_THAT(*written, ElementsAre(out / "a.src", out / "c.src"));
+    EXPECT_EQ(text("a.src"), "new a");
+    EXPECT_EQ(text("c.src"), "new c");
+    EXPECT_EQ(files(), 3);
 }
 
 }  // namespace

@@ -137,6 +137,49 @@ TEST_F(Line, AStartThatGoesInAnOutageAfterDoneEndsThePart) {
     EXPECT_EQ(bits(), "r--");
 }
 
+// The PLC has gone on to the next part in the outage: what is done is not that one.
+TEST_F(Line, ACallForAnotherPartInAnOutageIsNotAnsweredByTheFormersResult) {
+    const auto refused = [&] {
+        const HandshakeBits b = handshake->bits(state, now);
+        return b.done && b.result == LineResult::not_measured && b.alarm == LineAlarm::call_not_followed;
+    };
+    for (const bool ends_in_outage : {true, false}) {
+        for (const bool told_before : {false, true}) {
+            restart({.line_starts = true});
+            start(false);
+            start(true, 815);
+            ASSERT_TRUE(taken());
+            if (told_before) {
+                ends(LineResult::corrected);
+                EXPECT_EQ(bits(), "--d");
+            }
+            handshake->lost();
+            if (!told_before && ends_in_outage) {
+                ends(LineResult::corrected);
+                (void)bits();
+            }
+            start(true, 816);
+            EXPECT_FALSE(taken()) << "nobody knows when it rose";
+            if (!told_before && !ends_in_outage) {
+                EXPECT_EQ(bits(), "-b-");
+                EXPECT_TRUE(handshake->given_up()) << "nobody waits for 815";
+                ends(LineResult::corrected);
+            }
+            EXPECT_TRUE(refused()) << ends_in_outage << told_before;
+            start(false);
+            EXPECT_EQ(bits(), "r--");
+            start(true, 816);
+            EXPECT_TRUE(taken());
+        }
+    }
+    // The same part is still the one that was called for.
+    ends(LineResult::corrected);
+    handshake->lost();
+    start(true, 816);
+    EXPECT_EQ(bits(), "--d");
+    EXPECT_EQ(handshake->bits(state, now).result, LineResult::corrected);
+}
+
 TEST_F(Line, ACallThatNobodyFollowsIsAnswered) {
     state.ready = false;
     start(false);

@@ -97,13 +97,13 @@ std::filesystem::path behind_links(const std::filesystem::path& path) {
 }
 
 Expected<void> check_replaceable(const std::filesystem::path& path) {
-    constexpr std::string_view kDatabase("SQLite format 3", 16);  // with its 0
+    constexpr char kDatabase[] = "SQLite format 3";  // with its 0
     struct stat info {};
     if (::stat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) return {};
     Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
-    char begin[kDatabase.size()];
+    char begin[sizeof kDatabase];
     if (file.fd < 0 || ::read(file.fd, begin, sizeof begin) != static_cast<ssize_t>(sizeof begin)) return {};
-    if (std::string_view(begin, sizeof begin) != kDatabase) return {};
+    if (std::memcmp(begin, kDatabase, sizeof begin) != 0) return {};
     return input_error("is a project or a recording, which nothing else may replace", path.string(),
                        "give the name of another file");
 }

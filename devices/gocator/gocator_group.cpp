@@ -15,7 +15,7 @@ int standing(std::optional<gdp::Step> step) {
 
 // False: another one stands as well.
 template <class Data>
-bool keep_better(int now, Data&& data, Data& kept, int& kept_standing) {
+bool keep_better(int now, Data data, Data& kept, int& kept_standing) {
     if (now == 0 || now < kept_standing) return true;
     if (now == kept_standing) return false;
     kept = std::move(data);

@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "core/median.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 
@@ -63,9 +67,64 @@ bool GapFlushGauge::measure_line(const GapPart& part, double edge_along_x, doubl
     return line.ok && line.used >= 4;
 }
 
+// The outermost end of a face that is seen: of all its stretches, upright or leaning, the one that reaches out farthest by
+// all that is sure: a long one of a plane face, a short one of a round rim. False: there is no face.
+bool GapFlushGauge::measure_face(const GapPart& part, const Eigen::Vector2d& u, double pitch, Side& side) {
+    constexpr double kReach_mm = 0.5, kReachLines = 5;  // behind the outermost return
+    constexpr std::size_t kFewest = 5, kFewestOfFace = 10;
+    constexpr double kSure = 3.5, kMedian = 1.2533;  // sigmas; of a median, in those of a mean
+    constexpr double kLeans = 2;                     // sigmas of the difference of two halves
+    constexpr double kDeep = 3;                      // pitches: what is shorter is no face
+    const Eigen::Vector2d n(-u.y(), u.x());
+    face_.clear();
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < part.x.size(); ++i)
+        most = std::max(most, u.dot(Eigen::Vector2d(part.x[i], part.z[i])));
+    for (std::size_t i = 0; i < part.x.size(); ++i) {
+        const Eigen::Vector2d p(part.x[i], part.z[i]);
+        if (u.dot(p) > most - std::max(kReach_mm, kReachLines * pitch))
+            face_.emplace_back(n.dot(p), u.dot(p));
+    }
+    if (face_.size() < kFewestOfFace) return false;
+    std::sort(face_.begin(), face_.end(), [](const auto& a, const auto& b) { return a.x() < b.x(); });
+    if (!(face_.back().x() - face_.front().x() > kDeep * pitch)) return false;
+    x_.clear();
+    for (std::size_t i = 1; i + 1 < face_.size(); ++i)
+        x_.push_back(std::abs(face_[i - 1].y() - 2 * face_[i].y() + face_[i + 1].y()));
+    const double sigma = kMedian * kMadToSigma * median(x_) / std::sqrt(6.0);
+    const auto middle = [&](std::size_t first, std::size_t count) {
+        x_.clear();
+        for (std::size_t i = first; i < first + count; ++i) x_.push_back(face_[i].y());
+        return median(x_);
+    };
+    double best = -std::numeric_limits<double>::infinity(), along = 0;
+    std::size_t start = 0, length = 0;
+    for (std::size_t m = kFewest;; m = std::min(face_.size(), m + std::max<std::size_t>(2, m / 2))) {
+        const double unsure = sigma / std::sqrt(static_cast<double>(m));
+        for (std::size_t first = 0; first + m <= face_.size(); first += std::max<std::size_t>(1, m / 4)) {
+            const double stands = middle(first, m);
+            if (stands - kSure * unsure <= best) continue;
+            best = stands - kSure * unsure;
+            along = stands;
+            start = first;
+            length = m;
+        }
+        if (m == face_.size()) break;
+    }
+    // The outermost end of a stretch that leans is as far from its middle as the middles of its halves are from each other.
+    const std::size_t half = length / 2;
+    const double of_length = sigma / std::sqrt(static_cast<double>(length));
+    double lean = std::abs(middle(start, half) - middle(start + length - half, half));
+    if (lean < kLeans * 2 * of_length) lean = 0;
+    side.edge = n * 0.5 * (face_[start].x() + face_[start + length - 1].x()) + u * (along + 0.5 * lean);
+    side.edge_variance = of_length * of_length * (1 + kSure * kSure / 4) + lean * lean / 12;
+    return true;
+}
+
 // The outermost place along u. Where it is the last return, the surface goes on by up to one more line's
 // advance; where the contour turns back behind it, the place is seen.
 void GapFlushGauge::measure_edge(const GapPart& part, const Eigen::Vector2d& u, double pitch, Side& side) {
+    if (part.face && measure_face(part, u, pitch, side)) return;
     const auto along = [&](std::size_t i) { return u.dot(Eigen::Vector2d(part.x[i], part.z[i])); };
     const double plain = pitch * std::abs(u.x());
     // What the noise moves a point along u; the outermost of several equal ones is so by its noise.

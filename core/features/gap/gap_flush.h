@@ -25,6 +25,7 @@
 // Behind the edge a sensor that means m lines has drawn the step over m - 1 of them: the edge is
 // their middle, with (m - 1)^2 / 12 pitches^2 more; a flank that is seen counts m times. Where nothing is known of its
 // smoothing, and ground is seen: half of the steep lines beside the edge.
+// A stretch of a face is known to its m returns' noise along u, sigma_u / sqrt(m), and to what choosing it costs.
 // Covariance of (gap, flush) in mm^2.
 
 #include <Eigen/Core>
@@ -86,12 +87,14 @@ class GapFlushGauge {
         double edge_variance = 0;  // along u
     };
     bool measure_line(const GapPart& part, double edge_along_x, double inward, LineFit& line);
+    bool measure_face(const GapPart& part, const Eigen::Vector2d& u, double pitch, Side& side);
     void measure_edge(const GapPart& part, const Eigen::Vector2d& u, double pitch, Side& side);
 
     GapFlushSettings settings_;
     GapSides sides_;
     LineWorkspace workspace_;
     std::vector<double> x_, z_;
+    std::vector<Eigen::Vector2d> face_;  // across, along; from the surface down
 };
 
 }  // namespace seamwright

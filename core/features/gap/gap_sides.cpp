@@ -489,6 +489,7 @@ GapSides::Found GapSides::find(const Profile& profile, const FeatureWindow& wind
     part_after.noise_mm = noise_after;
     part_before.lost_share = part_after.lost_share =
         interleaved_ ? 0 : lost_share(before, {after_end, after.last});
+    part_before.face = part_after.face = interleaved_;
     part_before.smoothed_lines = part_after.smoothed_lines = smooths() ? noise_.apart() : 1;
     const int last = walked(before.last, 1, cut + 1, noise_before, part_before);
     const int first = walked(after_end, -1, after_stop, noise_after, part_after);

@@ -43,6 +43,7 @@ struct GapPart {
     double noise_mm = 0;
     double lost_share = 0;      // of its lines, without return or with a spark
     double smoothed_lines = 1;  // that the sensor means
+    bool face = false;          // that of the gap may be seen: order and spacing along x tell nothing of it
     bool ramp = false;          // of them, drawn of the step behind the edge, follows the last point
     double unsure_lines =
         0;  // steep ones beside the last point, where nothing is known of how the sensor smooths

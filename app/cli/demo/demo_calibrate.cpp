@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "app/cli/demo/demo_detail.h"
-#include "core/calibration/camera/lens.h"
+#include "core/calibration/lens/lens.h"
 #include "core/calibration/sphere/tcp_sphere.h"
 #include "core/calibration/stripe/stripe_camera.h"
 #include "core/profile/filter.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/acceptance/distributions.h"
-#include "core/calibration/camera/f_test.h"
 #include "core/calibration/camera/plate_corners.h"
+#include "core/calibration/f_test.h"
 
 namespace seamwright {
 namespace {

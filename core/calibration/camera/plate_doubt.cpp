@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/calibration/camera/f_test.h"
 #include "core/calibration/camera/plate_corners.h"
+#include "core/calibration/f_test.h"
 
 namespace seamwright {
 namespace {

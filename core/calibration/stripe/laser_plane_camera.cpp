@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/calibration/camera/f_test.h"
+#include "core/calibration/f_test.h"
 
 namespace seamwright {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/calibration/camera/f_test.h"
+#include "core/calibration/f_test.h"
 
 namespace seamwright::detail {
 namespace {

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "core/calibration/camera/camera.h"
-#include "core/calibration/camera/f_test.h"
+#include "core/calibration/f_test.h"
 #include "core/calibration/numbers.h"
 #include "core/calibration/statistics.h"
 

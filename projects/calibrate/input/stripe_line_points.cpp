@@ -1,6 +1,6 @@
 #include "projects/calibrate/input/stripe_line_points.h"
 
-#include "core/calibration/camera/bent_line.h"
+#include "core/calibration/lens/bent_line.h"
 #include "core/profile/filter.h"
 
 namespace seamwright {

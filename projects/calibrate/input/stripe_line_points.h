@@ -13,7 +13,7 @@ namespace seamwright {
 Expected<std::vector<Eigen::Vector2d>> stripe_points(const StripeImage& image, StripePeaks& peaks);
 
 // The stripe of a flat plate alone, without what stands beside the plate and without reflections
-// (core/calibration/camera/bent_line.h).
+// (core/calibration/lens/bent_line.h).
 std::vector<Eigen::Vector2d> on_the_plate(std::vector<Eigen::Vector2d> points);
 
 }  // namespace seamwright

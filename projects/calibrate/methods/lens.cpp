@@ -3,7 +3,7 @@
 //     "straightness_before_px","straightness_after_px","corner_shift_px","corner_sigma_px",...}; lines are
 //     excluded by number.
 
-#include "core/calibration/camera/lens.h"
+#include "core/calibration/lens/lens.h"
 
 #include <charconv>
 

@@ -7,7 +7,7 @@
 
 #include "core/calibration/bundle/bundle.h"
 #include "core/calibration/bundle/stereo.h"
-#include "core/calibration/camera/lens.h"
+#include "core/calibration/lens/lens.h"
 #include "core/calibration/pose/hand_eye.h"
 #include "core/calibration/stripe/laser_plane.h"
 #include "tests/core/calibration/camera/camera_scene.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/calibration/camera/lens.h"
+#include "core/calibration/lens/lens.h"
 #include "core/calibration/stripe/laser_plane.h"
 #include "tests/core/calibration/camera/camera_scene.h"
 

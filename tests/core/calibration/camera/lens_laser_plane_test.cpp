@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/calibration/camera/f_test.h"
-#include "core/calibration/camera/lens.h"
+#include "core/calibration/f_test.h"
+#include "core/calibration/lens/lens.h"
 #include "core/calibration/stripe/laser_plane.h"
 #include "tests/core/calibration/camera/camera_scene.h"
 #include "tests/core/calibration/independent/plain_world.h"

@@ -1,11 +1,11 @@
-#include "core/calibration/camera/line_noise.h"
+#include "core/calibration/lens/line_noise.h"
 #include "core/acceptance/distributions.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "core/calibration/camera/f_test.h"
+#include "core/calibration/f_test.h"
 
 namespace seamwright {
 

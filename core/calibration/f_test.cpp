@@ -1,4 +1,4 @@
-#include "core/calibration/camera/f_test.h"
+#include "core/calibration/f_test.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "core/calibration/camera/bent_line.h"
+#include "core/calibration/lens/bent_line.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "core/calibration/camera/lens.h"
+#include "core/calibration/lens/lens.h"
 
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/normal_prior.h>
@@ -8,11 +8,11 @@
 #include <cmath>
 #include <string>
 
-#include "core/calibration/camera/bent_line.h"
 #include "core/calibration/camera/camera.h"
 #include "core/calibration/camera/camera_limits.h"
-#include "core/calibration/camera/line_noise.h"
 #include "core/calibration/camera/projection.h"
+#include "core/calibration/lens/bent_line.h"
+#include "core/calibration/lens/line_noise.h"
 #include "core/calibration/problem.h"
 #include "core/geometry/decompositions.h"
 #include "core/median.h"

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/features/gap/gap_limits.h"
 #include "core/numbers.h"
 
 namespace seamwright {
 namespace {
+
+using namespace gap;
 
 constexpr double kOffLines = 0.25;      // spacings that a point stands off the even lines of one sensor
 constexpr double kInterleaved = 0.02;   // of the points
@@ -15,7 +18,6 @@ constexpr double kHoleInside = 2.5;     // within the end of a piece
 constexpr double kGoesOnSteeper = 0.6;  // a rim behind single missing returns
 constexpr int kHoleLines = 6;           // without return, within a piece
 constexpr double kRimEnd_mm = 3;        // of a piece, that may belong to the other part
-constexpr double kNoiseGate = 4.2;      // sigma
 constexpr double kFlattens = 0.6;       // of the slope before
 constexpr double kMostDrop = 1.2;       // of what a round rim drops in its last line
 constexpr int kSparks = 2;              // points passed over
@@ -25,16 +27,13 @@ constexpr double kSteep = 2.1;          // slope: 65 degrees; no panel is seen s
 constexpr double kSteepSmoothed = 1.4;  // of a sensor that smooths, or may: a ramp is flatter than the step
 constexpr double kSteepNoise = 6;       // sigma
 constexpr int kMostSteep = 40;          // points over which steepness is judged
-constexpr double kGroundSlope = 1;      // at most
-constexpr int kLeastGround = 3;         // points
 constexpr int kEndPoints = 12, kFewEndPoints = 4;
-constexpr double kGoesOn = 5;       // sigma
-constexpr double kSmooths = 1.5;    // lines that share their noise
-constexpr double kRampStep = 0.5;   // of the steepest: such a step belongs to the ramp
-constexpr double kByChance = 1e-3;  // holes of missing returns in a profile
-constexpr int kOfItsSize = 3;       // times the points of a smaller sheet: that one is none beside it
-constexpr int kOpen = 2;            // times the size, of a pair with a hole or ground in between
-constexpr double kSlopeNoise = 3;   // sigma in the height over which a slope is taken
+constexpr double kSmooths = 1.5;                       // lines that share their noise
+constexpr double kRampStep = 0.5;                      // of the steepest: such a step belongs to the ramp
+constexpr double kByChance = 1e-3;                     // holes of missing returns in a profile
+constexpr double kLeastDrawn = 4, kDrawnBeyond = 1.5;  // lines of a step; of those that likeness explains
+constexpr double kDrawnAlike = 0.25;
+constexpr double kSlopeNoise = 3;  // sigma in the height over which a slope is taken
 
 }  // namespace
 
@@ -184,117 +183,6 @@ void GapSides::divide() {
     }
     sheets_.resize(std::min(sheets_.size(), kept + 1));
     std::erase_if(sheets_, [&](const Sheet& sheet) { return sheet.count < std::max(kLeastGround, w); });
-}
-
-// Ends of neighbouring sheets: b's lies deeper than a's, and b is no piece of a rim that falls.
-bool GapSides::lower(const Sheet& b, const Sheet& a) const {
-    const bool behind = b.first > a.first;
-    const auto level = [&](const Sheet& sheet, bool last) {
-        const int i = last ? sheet.last : sheet.first, step = last ? -1 : 1;
-        return (points_.z[i] + points_.z[i + step]) / 2;
-    };
-    return level(b, !behind) < level(a, behind) - pitch_ - kNoiseGate * noise_.point_mm &&
-           std::abs(points_.z[b.last] - points_.z[b.first]) <
-               kGroundSlope * std::abs(points_.x[b.last] - points_.x[b.first]);
-}
-
-// Of interleaved lines neither steepness nor a missing return can be told: the two pieces with most points; of a single
-// one, as two sheets in flush with nothing seen between them are to the filter, what lies before and behind its widest hole.
-GapSides::Found GapSides::two_pieces(int least, Core& before, Core& after) const {
-    const FeaturePoints::Piece *first = nullptr, *second = nullptr;
-    for (const auto& piece : points_.pieces) {
-        if (piece.count < least) continue;
-        if (!first || piece.count > first->count) {
-            second = first;
-            first = &piece;
-        } else if (!second || piece.count > second->count) {
-            second = &piece;
-        }
-    }
-    if (!first) return Found::no_points;
-    const auto core = [&](int begin, int count) { return Core{raw_[begin], raw_[begin + count - 1]}; };
-    if (second) {
-        if (second->first < first->first) std::swap(first, second);
-        before = core(first->first, first->count);
-        after = core(second->first, second->count);
-        return Found::both;
-    }
-    const int end = first->first + first->count;
-    int behind = 0;
-    double widest = 0;
-    for (int i = first->first + least; i + least <= end; ++i) {
-        const double dx = points_.x[i] - points_.x[i - 1], dz = points_.z[i] - points_.z[i - 1];
-        if (!points_.pitch.is_gap(dx, dz) || std::hypot(dx, dz) <= widest) continue;
-        widest = std::hypot(dx, dz);
-        behind = i;
-    }
-    if (behind == 0) return Found::one_surface;
-    before = core(first->first, behind - first->first);
-    after = core(behind, end - behind);
-    return Found::both;
-}
-
-// The two largest sheets with nothing as high as they are, and of their size, in between.
-GapSides::Found GapSides::two_cores(int least, double panel_mm, Core& before, Core& after) {
-    const auto n = sheets_.size();
-    std::size_t a = n, b = n;
-    int most = 0, sum = 0;
-    for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = i + 1; j < n; ++j) {
-            const int smaller = std::min(sheets_[i].count, sheets_[j].count),
-                      both = sheets_[i].count + sheets_[j].count;
-            bool free = smaller >= least;
-            bool open = j == i + 1 && is_hole(sheets_[i].last, sheets_[j].first);
-            for (std::size_t k = i + 1; k < j && free; ++k) {
-                const bool ground = lower(sheets_[k], sheets_[i]) && lower(sheets_[k], sheets_[j]);
-                free = ground || kOfItsSize * sheets_[k].count < smaller;
-                open = open || ground;
-            }
-            // A gap rather than a step, which a panel may have as well.
-            const int weight = (open ? kOpen : 1) * smaller;
-            if (!free || weight < most || (weight == most && both <= sum)) continue;
-            a = i, b = j, most = weight, sum = both;
-        }
-    if (b == n) {
-        const bool any = std::any_of(sheets_.begin(), sheets_.end(),
-                                     [&](const Sheet& sheet) { return sheet.count >= least; });
-        return any ? Found::one_surface : Found::no_points;
-    }
-    // A short one with a higher one of its size on its other side as well may be the ground of a gap.
-    const auto ground = [&](std::size_t k, std::size_t panel) {
-        const Sheet& sheet = sheets_[k];
-        if (!lower(sheet, sheets_[panel]) ||
-            std::abs(points_.x[sheet.last] - points_.x[sheet.first]) > 2 * panel_mm)
-            return false;
-        for (std::size_t other = 0; other < n; ++other)
-            if ((other < k) != (panel < k) && other != k &&
-                kOfItsSize * sheets_[other].count >= sheet.count && lower(sheet, sheets_[other]))
-                return true;
-        return false;
-    };
-    if (ground(a, b) || ground(b, a)) return Found::ambiguous;
-    before = {raw_[sheets_[a].first], raw_[sheets_[a].last]};
-    after = {raw_[sheets_[b].first], raw_[sheets_[b].last]};
-    for (std::size_t k = a + 1; k < b; ++k) {
-        if (!lower(sheets_[k], sheets_[a]) || !lower(sheets_[k], sheets_[b])) continue;
-        // Up to the panels, as far as it is the ground's line.
-        const auto until = [&](int i, int step, int stop) {
-            const End end = end_of(sheets_[k], step > 0);
-            while (i + step != stop && std::abs(z_[i + step] - end.z - end.slope * (x_[i + step] - end.x)) <
-                                           kNoiseGate * noise_.point_mm)
-                i += step;
-            return i;
-        };
-        if (ground_first_ < 0) ground_first_ = until(raw_[sheets_[k].first], -1, before.last);
-        ground_last_ = until(raw_[sheets_[k].last], 1, after.first);
-    }
-    // A rim is steep as well: where its piece reaches neither the ground nor the other panel it is the panel's.
-    if (smooths()) return Found::both;
-    if (const int end = raw_[sheets_[a].piece_last]; end < (ground_first_ < 0 ? after.first : ground_first_))
-        before.last = end;
-    if (const int end = raw_[sheets_[b].piece_first]; end > (ground_last_ < 0 ? before.last : ground_last_))
-        after.first = end;
-    return Found::both;
 }
 
 // The raw point behind which the first part can have no more points: the widest hole between the surfaces or
@@ -497,8 +385,40 @@ GapSides::Found GapSides::find(const Profile& profile, const FeatureWindow& wind
         part.x.push_back(x_[i]);
         part.z.push_back(z_[i]);
     };
-    for (int i = last; i >= before.first; --i) take(part_before, i);
-    for (int i = first; i <= after.last; ++i) take(part_after, i);
+    int edge_before = last, edge_after = first;
+    if (ground && !interleaved_) {
+        // A sensor that means more lines than likeness tells draws both steps over like many of them.
+        const auto lines = [&](int i, int j) { return std::abs(x_[j] - x_[i]) / pitch_; };
+        const auto flat_end = [&](int edge, int to_gap, int inmost) {
+            double steepest = 0;
+            for (int i = edge, k = 0;
+                 k < kMostSteep && i + to_gap > 0 && i != (to_gap > 0 ? ground_first_ : ground_last_);
+                 i += to_gap, ++k)
+                steepest = std::max(steepest, std::abs(z_[i + to_gap] - z_[i]) / lines(i, i + to_gap));
+            while (edge != inmost &&
+                   std::abs(z_[edge] - z_[edge - to_gap]) >=
+                       std::max(kSteep * pitch_, kRampStep * steepest) * lines(edge, edge - to_gap))
+                edge -= to_gap;
+            return edge;
+        };
+        const int left = flat_end(last, 1, before.first), right = flat_end(first, -1, after.last);
+        const double drawn_left = lines(left, ground_first_), drawn_right = lines(right, ground_last_);
+        const double drawn = std::min(drawn_left, drawn_right);
+        const bool whole = missing(left, ground_first_) + missing(ground_last_, right) == 0;
+        if (whole && drawn >= kLeastDrawn &&
+            std::abs(drawn_left - drawn_right) <= std::max(2.0, kDrawnAlike * drawn) &&
+            drawn > kDrawnBeyond * noise_.apart()) {
+            edge_before = left;
+            edge_after = right;
+            for (GapPart* part : {&part_before, &part_after}) {
+                part->ramp = true;
+                part->smoothed_lines = drawn;
+                part->unsure_lines = 0;
+            }
+        }
+    }
+    for (int i = edge_before; i >= before.first; --i) take(part_before, i);
+    for (int i = edge_after; i <= after.last; ++i) take(part_after, i);
     return Found::both;
 }
 

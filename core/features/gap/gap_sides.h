@@ -6,9 +6,11 @@
 // steeper than 65 degrees (54 where the sensor smooths, or where nothing is known of that) and at holes: more lines
 // without return than are missing by chance, or left out by the filter and lower than the contour on either side. What
 // goes on from one to the next is put together again. The parts are the two largest sheets with nothing as high as they
-// are, and of a third of their size at least, in between. A sheet between them that is lower than both is the ground: no
-// part reaches it. Where a part of the two may be ground itself (a higher sheet of a third of its size on either side,
-// and short) it cannot be told which the parts are.
+// are, and of a third of their size at least, in between. A sheet between them that lies under both, in the lower half of the
+// depth that is seen, is the ground: no part reaches it. What else lies between them as high as a panel, beyond a dark streak or
+// a step, belongs to a panel: that on its side of the ground, else that whose line it continues. It cannot be told which the
+// parts are where neither tells, where a part may be ground itself (a higher sheet of a third of its size on either side, and
+// short), where a ledge lies between them, and where two panels in flush show no ground and another break beside the gap.
 //
 // The filter judges a point by its spacing and takes the steep end of a rounded rim for outliers or for
 // pieces of their own: the last of what is seen of the rim is then missing, and a gap is measured too wide by
@@ -22,7 +24,9 @@
 // reached the ground, and the last steep step to it is taken back.
 //
 // A sensor that means m lines draws a step over m - 1 of them: where the contour goes on behind a part its last points,
-// as many at most, are given back when their step is half of the steepest there, and the edge stands in the middle.
+// as many at most, are given back when their step is half of the steepest there, and the edge stands in the middle. Both
+// steps down to the ground over like many lines, four at least, and more than the likeness of the noise tells (which sees no
+// mean over more than seven), are so many lines.
 //
 // The lines of one sensor are evenly apart. Merged ones of two heads (double_head.h) are not, in one piece their order is
 // that of x, and the heads see the faces of the gap: there nothing is steep and nothing missing, and the parts are the

@@ -234,6 +234,79 @@ TEST(GapWidth, ReturnsThatAreMissingInAPanelAreNoEdge) {
     }
 }
 
+// A panel beside the gap of 4 mm at x = 0 that is dark from `from_mm` to `to_mm` off its edge, and higher by `step_mm` from
+// `from_mm` on; the other one stands `flush_mm` higher. Ground at -`ground_mm`, where it is seen.
+struct Streak {
+    double from_mm, to_mm, step_mm, flush_mm, ground_mm;
+};
+GapFlush beside(const Streak& s, double pitch_mm, bool left, std::mt19937_64& engine) {
+    std::uniform_real_distribution<double> uniform(0, 1);
+    std::normal_distribution<double> normal;
+    Profile p;
+    for (double x = -20 + pitch_mm * uniform(engine); x < 24; x += pitch_mm) {
+        const bool in_gap = x > 0 && x < 4;
+        const double off = x <= 0 ? -x : x - 4;
+        double z = in_gap ? (s.ground_mm > 0 ? -s.ground_mm : std::nan("")) : x >= 4 ? s.flush_mm : 0;
+        if (!in_gap && (x <= 0) == left && off > s.from_mm) z += off < s.to_mm ? std::nan("") : s.step_mm;
+        p.x_mm.push_back(x);
+        p.z_mm.push_back(z + 0.02 * normal(engine));
+    }
+    EXPECT_TRUE(filter_profile(p, {}));
+    return GapFlushGauge({}).measure(p);
+}
+
+TEST(GapWidth, ADarkStreakBesideItIsNotTheGap) {
+    std::mt19937_64 engine(52);
+    for (const double pitch : {0.04, 0.1})
+        for (const bool left : {true, false})
+            for (const double strip : {1.0, 3.0, 8.0})
+                for (const double ground : {6.0, 0.0})
+                    for (int trial = 0; trial < 5; ++trial) {
+                        const Streak s{strip, strip + 8 * pitch, 0, ground > 0 ? 0.2 : 0.5, ground};
+                        const GapFlush g = beside(s, pitch, left, engine);
+                        ASSERT_EQ(g.status, GapFlushStatus::ok)
+                            << g.message << pitch << left << strip << ground;
+                        EXPECT_NEAR(g.gap_mm, 4, 0.05) << pitch << left << strip << ground;
+                    }
+}
+
+TEST(GapWidth, WhatNobodyCanTellFromTheGapIsNotMeasured) {
+    std::mt19937_64 engine(53);
+    for (int trial = 0; trial < 20; ++trial) {
+        const GapFlush flush = beside({3, 4, 0, 0, 0}, 0.1, trial % 2 == 0, engine);
+        EXPECT_EQ(flush.status, GapFlushStatus::ill_conditioned)
+            << "two breaks in one line: " << flush.gap_mm;
+        const GapFlush step = beside({3, 3, 0.7, 0.2, 6}, 0.1, true, engine);
+        EXPECT_TRUE(step.status == GapFlushStatus::ill_conditioned || std::abs(step.gap_mm - 4) < 0.1)
+            << "a ledge: " << step.gap_mm;
+        EXPECT_EQ(beside({3, 3, 0, 0, 0}, 0.1, true, engine).status, GapFlushStatus::ok) << "no second break";
+    }
+}
+
+// Likeness of neighbours sees no mean over so many lines; the steps down to the ground show it.
+TEST(GapWidth, ASensorThatMeansManyLinesOverDeepGround) {
+    std::mt19937_64 engine(54);
+    std::normal_distribution<double> normal;
+    for (const double pitch : {0.04, 0.1, 0.2})
+        for (const int mean : {9, 11, 15})
+            for (const double ground : {6.0, 20.0})
+                for (int trial = 0; trial < 5 && mean * pitch < 2.5;
+                     ++trial) {  // else hardly any ground is left
+                    Profile p;
+                    for (double x = -20 + 0.01 * trial; x < 24; x += pitch) {
+                        p.x_mm.push_back(x);
+                        p.z_mm.push_back((x < 0 || x > 4 ? 0 : -ground) + 0.02 * normal(engine));
+                    }
+                    smooth(p.z_mm, mean);
+                    EXPECT_TRUE(filter_profile(p, {}));
+                    const GapFlush g = GapFlushGauge({}).measure(p);
+                    ASSERT_EQ(g.status, GapFlushStatus::ok) << g.message;
+                    EXPECT_LT(std::abs(g.gap_mm - 4), std::max(0.05, 2 * std::sqrt(g.covariance(0, 0))))
+                        << pitch << " " << mean << " " << ground << ": " << g.gap_mm;
+                    EXPECT_NEAR(g.gap_mm, 4, 2.1 * pitch) << mean << " " << ground;
+                }
+}
+
 // One return below the contour, where the rim grows steep, must not end the part there.
 TEST(GapWidth, ASparkOnTheRimIsNoEdge) {
     constexpr double kPitch = 0.055, kGap = 4;

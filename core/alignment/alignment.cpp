@@ -178,6 +178,30 @@ StandOff left_over(const Drift& drift, double jitter_mm) {
     return most;
 }
 
+// How far, two sigma, the contour stands now here and now there from profile to profile within the jitter, which no travel
+// explains (a ripple shorter than the steps tell, a sensor that shakes); 0 where the registration's own noise does.
+double scatter_beyond(const Reference& best, const Drift& drift, double jitter_mm) {
+    constexpr std::size_t kFewest = 7;
+    constexpr double kBeyond = 5;  // of the registration's sigma
+    std::vector<double> stated;
+    for (const Registered& r : best.found)
+        if (r.ok) stated.push_back(r.sigma_mm);
+    double most = 0;
+    for (const bool along_x : {true, false}) {
+        const PolynomialFit& f = along_x ? drift.x : drift.z;
+        const std::vector<double>& value = along_x ? drift.dx_mm : drift.dz_mm;
+        std::vector<double> rest;
+        for (std::size_t i = 0; i < value.size(); ++i)
+            if (std::abs(drift.travel_mm[i]) <= jitter_mm)
+                rest.push_back(std::abs(value[i] - f.coefficient[0] -
+                                        rise(f, drift.travel_mm[i], drift.from, drift.to)));
+        if (rest.size() < kFewest) continue;
+        const double sigma = kMadToSigma * median(rest);
+        if (sigma > kBeyond * median(stated)) most = std::max(most, 2 * sigma);
+    }
+    return most;
+}
+
 // A stretch of travel within the jitter in which the contour is not found.
 struct Unseen {
     double from_mm = 0, to_mm = 0;
@@ -233,36 +257,68 @@ Unseen unseen_within(const std::vector<TravelOffset>& offsets, const AlignmentOp
     return worst;
 }
 
-// Where the profile is broken (a gap, a rim over a frame) the two sides may move otherwise, and the whole takes their mean: then
-// what counts is the drift of the piece with the reference point. Answers by how much it differs within the jitter.
-double follow_piece(const Reference& best, std::span<const TravelProfile> pass,
-                    const AlignmentOptions& options, Drift& drift, std::vector<TravelOffset>& offsets) {
+// Within the noise of both slopes the two drifts are one.
+double differ_mm(const Drift& own, const Drift& drift, double jitter_mm) {
     constexpr double kSure = 4;  // sigmas
-    if (!options.reference_mm || !drift.along.isZero()) return 0;
-    const auto piece =
-        register_piece(best, pass, outwards_from_trigger(pass, options.window_mm), *options.reference_mm);
-    if (!piece) return 0;
-    Drift own;
-    std::vector<TravelOffset> own_offsets = offsets;
-    for (std::size_t i = 0; i < pass.size(); ++i) {
-        const Registered& r = piece->found[i];
-        if (i == piece->index) continue;
-        own_offsets[i] = {pass[i].travel_mm};
-        if (!r.ok) continue;
-        own_offsets[i] = {pass[i].travel_mm, r.shift.x(), r.shift.y(), deg_from_rad(r.phi), r.rms, true};
-        own.add(own_offsets[i]);
-    }
-    if (!own.fit()) return 0;
     const auto differs = [](const PolynomialFit& a, const PolynomialFit& b) {
         const double by = a.coefficient[1] - b.coefficient[1];
         return std::abs(by) > kSure * std::hypot(a.coefficient_sigma[1], b.coefficient_sigma[1]) ? by : 0.0;
     };
-    const double apart = std::hypot(differs(own.x, drift.x), differs(own.z, drift.z)) * options.jitter_mm;
-    if (apart > 0) {
+    return std::hypot(differs(own.x, drift.x), differs(own.z, drift.z)) * jitter_mm;
+}
+
+// What counts is the drift where the reference point is. The whole contour's motion is another one where the profile is broken
+// (a gap, a rim over a frame), where a part of it stands still (a swage beside an edge that runs off), and where a part grows:
+// so the unbroken piece with the point, what is near it, and the end that it lies on are followed as well, and the one that
+// differs and drifts farthest is taken. A field of view that cuts the contour makes an end that drifts against it, never farther.
+// Answers by how much it differs within the jitter.
+double follow_point(const Reference& best, std::span<const TravelProfile> pass,
+                    const AlignmentOptions& options, Drift& drift, std::vector<TravelOffset>& offsets) {
+    constexpr double kNear_mm = 8, kNearest_mm = 4;
+    if (!options.reference_mm || !drift.along.isZero()) return 0;
+    const Eigen::Vector2d point = *options.reference_mm;
+    const auto order = outwards_from_trigger(pass, options.window_mm);
+    const Drift whole = drift;
+    const std::vector<TravelOffset> whole_offsets = offsets;
+    double most = 0;
+    const auto consider = [&](const std::vector<TravelOffset>& own_offsets, bool farther) {
+        Drift own;
+        for (std::size_t i = 0; i < pass.size(); ++i)
+            if (i != best.index && own_offsets[i].ok) own.add(own_offsets[i]);
+        if (!own.fit()) return;
+        const double apart = differ_mm(own, whole, options.jitter_mm);
+        if (!(apart > 0) || (farther && own.farthest(options.jitter_mm) <= drift.farthest(options.jitter_mm)))
+            return;
+        most = std::max(most, apart);
         drift = std::move(own);
-        offsets = std::move(own_offsets);
+        offsets = own_offsets;
+    };
+    for (const double within_mm : {kInfinity, kNear_mm, kNearest_mm}) {
+        const auto piece = register_piece(best, pass, order, point, within_mm);
+        if (!piece) continue;
+        std::vector<TravelOffset> own = whole_offsets;
+        for (std::size_t i = 0; i < pass.size(); ++i) {
+            const Registered& r = piece->found[i];
+            if (i == piece->index) continue;
+            own[i] = {pass[i].travel_mm};
+            if (r.ok)
+                own[i] = {pass[i].travel_mm, r.shift.x(), r.shift.y(), deg_from_rad(r.phi), r.rms, true};
+        }
+        consider(own, std::isfinite(within_mm));
     }
-    return apart;
+    const auto ends = end_offsets(best, pass, order, point);
+    if (!ends.empty()) {
+        std::vector<TravelOffset> own = whole_offsets;
+        for (std::size_t i = 0; i < pass.size(); ++i) {
+            if (i == best.index) continue;
+            own[i].ok = own[i].ok && ends[i];
+            if (!own[i].ok) continue;
+            own[i].dx_mm += ends[i]->x();
+            own[i].dz_mm += ends[i]->y();
+        }
+        consider(own, true);
+    }
+    return most;
 }
 
 // Angles, their sigmas, the cure and the contour's radius.
@@ -451,13 +507,14 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
         drift.add(result.offsets[i]);
     }
     if (!drift.fit()) return too_few(drift.travel_mm.size() + 1);
-    const double apart_mm = follow_piece(*best, pass, options, drift, result.offsets);
+    const double apart_mm = follow_point(*best, pass, options, drift, result.offsets);
     state_direction(drift, options.jitter_mm, result);
     state_error(drift, options.jitter_mm, result);
     const bool lost = state_shape(*best, pass, options, result);
     const StandOff off = left_over(drift, options.jitter_mm);
+    const double scatter_mm = scatter_beyond(*best, drift, options.jitter_mm);
     const Unseen unseen = unseen_within(result.offsets, options);
-    result.shape_change_mm = std::max({result.shape_change_mm, off.most_mm, apart_mm});
+    result.shape_change_mm = std::max({result.shape_change_mm, off.most_mm, apart_mm, scatter_mm});
     const bool changes = lost || unseen.lost || result.shape_change_mm > options.tolerance_mm;
     result.status = judged(result, options.tolerance_mm, changes, unseen.uncovered);
     result.cure = cure_of(result, drift, options, changes, off, unseen);

@@ -6,8 +6,9 @@
 // whole registers (a noisy profile or one with a ghost in it does not do), giving the shift dx(y), dz(y) of
 // the spot's reference point and the turn dphi(y) against travel y. Polynomials of the lowest order that the
 // data ask for (1..3, F test) are fitted robustly; their slopes at y = 0 are the misalignment, their bend the
-// local radius, what registration and fits leave over is shape change. Where the profile is broken and its pieces move
-// otherwise, that piece counts which the reference point lies on.
+// local radius, what registration and fits leave over is shape change. What counts is the reference point:
+// the unbroken piece of the profile with it, what lies within 8 and 4 mm of it, and the end of the contour that it lies on are
+// followed as well, and the one that surely moves otherwise and drifts farthest is taken.
 //
 // Noise model: independent, equal noise of the registered shifts from profile to profile, estimated from the
 // fits' residuals; the trigger profile's own noise is common to all and only moves the constant, so it takes
@@ -80,7 +81,8 @@ struct AlignmentResult {
     double expected_error_sigma_mm = 0;  // infinite where a direction is not seen
     // The largest of what within the jitter is no rigid motion along the fits, beyond noise: rms that remains after
     // registration; steady growth of one piece of the contour against another, or of a break in it (a gap); how far the
-    // piece with the reference point moves otherwise than the whole; offsets that the fits leave, of three neighbours alike.
+    // piece with the reference point moves otherwise than the whole; offsets that the fits leave, of three neighbours alike, or
+    // scattered (two sigma) beyond five times what the registration states.
     double shape_change_mm = 0;
     bool sliding = false;               // the profile is a straight line: only the drift across it is seen
     ContourCurve curve;                 // of the reference point, for the correction, see correction.h

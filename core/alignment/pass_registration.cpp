@@ -97,6 +97,7 @@ bool accept(const Registration& r, const Eigen::Vector2d& reference, const Eigen
     out.phi = r.scene_from_template.phi_rad;
     out.rms = r.rms_mm;
     out.share = r.inlier_share;
+    out.sigma_mm = std::sqrt(std::max(r.covariance(0, 0), r.covariance(1, 1)));
     out.slides = r.status == RegistrationStatus::sliding ? r.sliding_direction : straight;
     out.shift -= out.slides * out.slides.dot(out.shift);
     out.ok = out.shift.allFinite() && std::isfinite(out.phi);
@@ -223,9 +224,10 @@ double sure_slope(const std::vector<double>& travel, const std::vector<double>& 
 struct Break {
     Eigen::Vector2d before, after;
     std::size_t index = 0;
+    bool clear = false;  // no steep flank, whose lines stand as far apart as a narrow one's
 };
 std::vector<Break> breaks_of(const Profile& p) {
-    constexpr double kOfPitch = 5, kLeast_mm = 0.3;
+    constexpr double kOfPitch = 5, kLeast_mm = 0.3, kClear = 3;
     std::vector<Eigen::Vector2d> points;
     std::vector<std::size_t> index;
     for (std::size_t i = 0; i < p.size(); ++i) {
@@ -239,18 +241,45 @@ std::vector<Break> breaks_of(const Profile& p) {
     const double least = std::max(kOfPitch * median(sorted), kLeast_mm);
     std::vector<Break> out;
     for (std::size_t i = 0; i < apart.size(); ++i)
-        if (apart[i] > least) out.push_back({points[i], points[i + 1], index[i + 1]});
+        if (apart[i] > least)
+            out.push_back({points[i], points[i + 1], index[i + 1], apart[i] > kClear * least});
+    return out;
+}
+
+// Where the contour begins or ends: at the profile's own ends and on either side of a break.
+struct ContourEnd {
+    Eigen::Vector2d at;
+    bool begins = false, clear = true;
+};
+std::vector<ContourEnd> ends_of(const Profile& p) {
+    std::vector<ContourEnd> out;
+    Eigen::Vector2d first = Eigen::Vector2d::Zero(), last = first;
+    bool any = false;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        if (!usable(p, i)) continue;
+        last = {p.x_mm[i], p.z_mm[i]};
+        if (!any) first = last;
+        any = true;
+    }
+    if (!any) return out;
+    out.push_back({first, true});
+    for (const Break& b : breaks_of(p)) {
+        out.push_back({b.before, false, b.clear});
+        out.push_back({b.after, true, b.clear});
+    }
+    out.push_back({last, false});
     return out;
 }
 
 }  // namespace
 
 std::optional<Reference> register_piece(const Reference& reference, std::span<const TravelProfile> pass,
-                                        const std::vector<std::size_t>& order, const Eigen::Vector2d& point) {
+                                        const std::vector<std::size_t>& order, const Eigen::Vector2d& point,
+                                        double within_mm) {
     constexpr std::size_t kFewestPoints = 20;
     const Profile& whole = pass[reference.index].profile;
-    const std::vector<Break> breaks = breaks_of(whole);
-    if (breaks.empty()) return std::nullopt;
+    // What is near the point may be on either side of a break.
+    const std::vector<Break> breaks = std::isfinite(within_mm) ? std::vector<Break>{} : breaks_of(whole);
     std::size_t first = 0, last = 0;
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k <= breaks.size(); ++k) {
@@ -266,17 +295,61 @@ std::optional<Reference> register_piece(const Reference& reference, std::span<co
     }
     Profile piece;
     for (std::size_t i = first; i < last; ++i) {
-        if (!usable(whole, i)) continue;
-        piece.x_mm.push_back(whole.x_mm[i]);
-        piece.z_mm.push_back(whole.z_mm[i]);
+        const Eigen::Vector2d p(whole.x_mm[i], whole.z_mm[i]);
+        if (!usable(whole, i) || (p - point).norm() > within_mm) continue;
+        piece.x_mm.push_back(p.x());
+        piece.z_mm.push_back(p.y());
     }
-    if (piece.size() < kFewestPoints || !straight_direction(piece).isZero()) return std::nullopt;
+    if (piece.size() == usable_points(whole) || piece.size() < kFewestPoints ||
+        !straight_direction(piece).isZero())
+        return std::nullopt;
     auto matcher = ContourMatcher::make(piece, point);
     if (!matcher) return std::nullopt;
     Reference r = register_to(reference.index, std::move(*matcher), pass, order, point);
     if (!r.good) return std::nullopt;
     for (Registered& f : r.found) f.ok = f.ok && f.slides.isZero();
     return r;
+}
+
+std::vector<std::optional<Eigen::Vector2d>> end_offsets(const Reference& reference,
+                                                        std::span<const TravelProfile> pass,
+                                                        const std::vector<std::size_t>& order,
+                                                        const Eigen::Vector2d& point) {
+    constexpr double kNear_mm = 1.5, kLost_mm = 2;
+    const std::vector<ContourEnd> taught = ends_of(pass[reference.index].profile);
+    const auto off = [&](const ContourEnd& e) { return (e.at - point).norm(); };
+    const auto own = std::min_element(taught.begin(), taught.end(),
+                                      [&](const auto& a, const auto& b) { return off(a) < off(b); });
+    if (own == taught.end() || off(*own) > kNear_mm || !own->clear) return {};
+    std::vector<std::optional<Eigen::Vector2d>> out(pass.size());
+    const double y0 = pass[reference.index].travel_mm;
+    // Outwards from the reference, each searched for where its inner neighbour's was.
+    for (const bool forward : {true, false}) {
+        std::vector<std::size_t> outwards;
+        for (const std::size_t i : order)
+            if (i != reference.index && (pass[i].travel_mm >= y0) == forward) outwards.push_back(i);
+        std::stable_sort(outwards.begin(), outwards.end(), [&](auto a, auto b) {
+            return std::abs(pass[a].travel_mm - y0) < std::abs(pass[b].travel_mm - y0);
+        });
+        Eigen::Vector2d last = Eigen::Vector2d::Zero();
+        for (const std::size_t i : outwards) {
+            const Registered& f = reference.found[i];
+            if (!f.ok) continue;
+            const PlanarMotion motion = motion_of(f, point);
+            const Eigen::Rotation2Dd back(-motion.phi_rad);
+            double nearest = kLost_mm;
+            for (const ContourEnd& e : ends_of(pass[i].profile)) {
+                if (e.begins != own->begins) continue;
+                const Eigen::Vector2d moved =
+                    back * (e.at - Eigen::Vector2d(motion.dx_mm, motion.dz_mm)) - own->at;
+                if ((moved - last).norm() > nearest) continue;
+                nearest = (moved - last).norm();
+                out[i] = moved;
+            }
+            if (out[i]) last = *out[i];
+        }
+    }
+    return out;
 }
 
 double growth_mm(const Reference& reference, std::span<const TravelProfile> pass,

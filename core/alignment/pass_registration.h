@@ -17,6 +17,7 @@ inline constexpr int kFewestProfiles = 5;
 struct Registered {
     Eigen::Vector2d shift = Eigen::Vector2d::Zero();
     double phi = 0, rms = 0, share = 0;
+    double sigma_mm = 0;                               // of the shift's larger axis, by the registration
     Eigen::Vector2d slides = Eigen::Vector2d::Zero();  // direction, zero when the profile has a shape
     bool ok = false;
 };
@@ -39,10 +40,19 @@ std::optional<Reference> choose_reference(std::span<const TravelProfile> pass,
                                           const std::vector<std::size_t>& order,
                                           const std::optional<Eigen::Vector2d>& point);
 
-// The same, of that piece of the reference's profile alone that is unbroken and nearest to the point. Nothing where the
-// profile is one piece, or where that one is too short, straight, or not found in most of the pass.
+// The same, of that piece of the reference's profile alone that is unbroken and nearest to the point or, with `within_mm` finite,
+// of what lies so near to it.
+// Nothing where that is the whole profile, or too short, straight, or not found in most of the pass.
 std::optional<Reference> register_piece(const Reference& reference, std::span<const TravelProfile> pass,
-                                        const std::vector<std::size_t>& order, const Eigen::Vector2d& point);
+                                        const std::vector<std::size_t>& order, const Eigen::Vector2d& point,
+                                        double within_mm);
+
+// Where in every profile that end of the contour stands, or that side of a break, on which the reference point lies (within 1.5
+// mm): off its place by the registration, in the reference's frame; nothing where it is not seen. Empty: none is as near.
+std::vector<std::optional<Eigen::Vector2d>> end_offsets(const Reference& reference,
+                                                        std::span<const TravelProfile> pass,
+                                                        const std::vector<std::size_t>& order,
+                                                        const Eigen::Vector2d& point);
 
 // How much the pieces of the contour grow or sink against each other within the jitter, beyond their noise.
 double growth_mm(const Reference& reference, std::span<const TravelProfile> pass,

@@ -27,6 +27,7 @@ constexpr double kSettled_mm = 0.1;  // a motion by the form's model that is not
 constexpr double kNearPose = 0.004, kSameRival = 0.01;
 // Of the points: fewer speak for nothing. Poses near by and those on a sheet's other face differ at its ends alone.
 constexpr double kLeastShare = 0.004, kLeastShareNear = 0.001;
+constexpr std::size_t kFew = 500;      // points that find the way
 constexpr double kLeastForm_mm = 0.2;  // that a point is off anyway
 
 struct Levels {
@@ -70,7 +71,7 @@ class Fit {
                                          static_cast<float>(options.noise_mm * averaged));
         }
         levels_.judges = thinned(levels_.fine, 4000);
-        levels_.few = thinned(levels_.fine, 500);
+        levels_.few = thinned(levels_.fine, kFew);
         out_.points = cloud.size();
         gate_ = kFirstGate * size_;
         floor_ = std::max(kLeastGate * size_, options.noise_mm * 3);
@@ -279,25 +280,62 @@ class Fit {
     }
 
     // Rivals are refined without a bend, so it is the rigid fit that they are compared with; near by, the same points
-    // find the same place.
-    bool elsewhere(Pose& pose) const {
-        if (!near_by(pose)) return beyond_the_stated(pose, out_.base_from_part);
-        if (!beyond_the_stated(pose, few_)) return false;
+    // find the same place. A pose that has not settled lies off the part and would count as told apart.
+    bool elsewhere(Pose& pose, bool other_face) {
+        if (!other_face) {
+            if (!near_by(pose)) return beyond_the_stated(pose, out_.base_from_part);
+            if (!beyond_the_stated(pose, few_)) return false;
+        }
         pose = by_judges(pose).base_from_part;
-        return beyond_the_stated(pose, judged_);
+        if (!beyond_the_stated(pose, judged_)) return false;
+        pose = refine(levels_.fine, surface_, pose, {std::max(4 * out_.gate_mm, floor_), floor_, 60, facing_})
+                   .base_from_part;
+        return beyond_the_stated(pose, rigid_) && !known(pose, ended_);
+    }
+    // Many starts end at one place.
+    bool known(const Pose& pose, std::vector<Pose>& poses) const {
+        for (const Pose& other : poses)
+            if (corner_distance_mm(surface_, pose, other) < kSettled_mm) return true;
+        poses.push_back(pose);
+        return false;
     }
     bool near_by(const Pose& pose) const {
         const double near = std::max(kNearPose * size_, 5 * (out_.noise_mm + out_.form_mm));
         return corner_distance_mm(surface_, pose, rigid_) <= near;
     }
 
+    // Few points find the way; that the place is the face's own and not one between the two, only many say.
+    std::optional<Pose> on_other_face(const Cloud& seen, std::vector<Pose>& begun) const {
+        std::vector<std::size_t> every;
+        for (std::size_t i = 0; i < seen.size(); i += 1 + seen.size() / kFew) every.push_back(i);
+        const double capture = std::max(gate_, kCaptureOfRival * size_);
+        const Pose there =
+            refine(picked(seen, every), surface_, rigid_, {capture, floor_, 40, true}).base_from_part;
+        if (known(there, begun)) return std::nullopt;
+        const double small = std::max(4 * out_.gate_mm, floor_);
+        return refine(seen, surface_, there, {small, floor_, 60, true}).base_from_part;
+    }
+
     void look_for_rivals() {
         out_.status = FitStatus::ok;
+        few_ = by_few(rigid_).base_from_part;
+        ended_.clear();
+        judged_ = by_judges(rigid_).base_from_part;
         struct Contender {
             Pose pose;
             bool other_face = false;
         };
         std::vector<Contender> candidates;
+        std::vector<Pose> begun{few_};
+        if (!facing_)
+            for (const Cloud& seen : on_other_faces(levels_.judges, surface_, rigid_, out_.gate_mm)) {
+                if (stopped(options_)) {
+                    refuse(FitStatus::cancelled, "cancelled");
+                    return;
+                }
+                if (const auto pose = on_other_face(seen, begun)) candidates.push_back({*pose, true});
+            }
+        begun = {few_};
         for (const Pose& pose : refined_) candidates.push_back({by_few(pose).base_from_part});
         for (const Pose& start : rival_starts(surface_, out_.base_from_part, options_)) {
             if (stopped(options_)) {
@@ -310,32 +348,23 @@ class Fit {
                                          {std::max(gate_, kCaptureOfRival * size_), floor_, 40, facing_})
                                       .base_from_part});
         }
-        if (!facing_)
-            for (const Cloud& seen : on_other_faces(levels_.few, surface_, rigid_, out_.gate_mm)) {
-                if (stopped(options_)) {
-                    refuse(FitStatus::cancelled, "cancelled");
-                    return;
-                }
-                const double capture = std::max(gate_, kCaptureOfRival * size_);
-                const Refined there = refine(seen, surface_, rigid_, {capture, floor_, 40, true});
-                candidates.push_back({by_few(there.base_from_part).base_from_part, true});
-            }
-        few_ = by_few(rigid_).base_from_part;
-        judged_ = by_judges(rigid_).base_from_part;
         // What a point is off anyway.
         const double form = std::max({kLeastForm_mm, 3 * out_.form_mm, 3 * local_judges_mm()});
         for (Contender& candidate : candidates) {
-            if (!elsewhere(candidate.pose) || !within_start(candidate.pose, surface_, options_)) continue;
+            if (!candidate.other_face && known(candidate.pose, begun)) continue;
+            if (!elsewhere(candidate.pose, candidate.other_face) ||
+                !within_start(candidate.pose, surface_, options_))
+                continue;
             // Of several that ended near one another the one that is nearest to being as good.
             FitRival rival = compared(candidate.pose, candidate.other_face, form);
             rival.other_face = candidate.other_face;
-            const auto known = std::find_if(out_.rivals.begin(), out_.rivals.end(), [&](const FitRival& r) {
+            const auto same = std::find_if(out_.rivals.begin(), out_.rivals.end(), [&](const FitRival& r) {
                 return corner_distance_mm(surface_, r.base_from_part, candidate.pose) < kSameRival * size_;
             });
-            if (known == out_.rivals.end())
+            if (same == out_.rivals.end())
                 out_.rivals.push_back(rival);
-            else if (nearer_to_as_good(rival, *known))
-                *known = rival;
+            else if (nearer_to_as_good(rival, *same))
+                *same = rival;
         }
         std::stable_sort(out_.rivals.begin(), out_.rivals.end(), nearer_to_as_good);
         if (out_.rivals.size() > 5) out_.rivals.resize(5);
@@ -365,8 +394,10 @@ class Fit {
         form =
             std::min(3 * std::max(out_.form_mm, scatter_mm_), corner_distance_mm(surface_, pose, rigid_) / 2);
         bool better = false;
-        const FitRival rival = compare(levels_.fine, surface_, rigid_, pose, form,
-                                       std::max(out_.gate_mm, 6 * form), kLeastShareNear, facing_, &better);
+        const FitRival rival = facing_
+                                   ? compare(levels_.fine, surface_, rigid_, pose, form,
+                                             std::max(out_.gate_mm, 6 * form), kLeastShareNear, true, &better)
+                                   : compare_of_sheet(levels_.fine, surface_, rigid_, pose, form, better);
         if (better && net(rival) < best_net_) better_ = pose, best_net_ = net(rival);
         return rival;
     }
@@ -389,6 +420,7 @@ class Fit {
     Pose few_ = Pose::Identity(), judged_ = Pose::Identity();  // the same place as fewer points have it
     double scatter_mm_ = 0;                                    // of a point of the fine level
     std::vector<Pose> refined_;
+    std::vector<Pose> ended_;     // where rivals ended
     std::optional<Pose> better_;  // a rival that the points speak for, the most clearly
     double best_net_ = 0;
     SurfaceFit out_;

@@ -44,6 +44,11 @@ bool within_start(const Pose& pose, const Surface& surface, const FitOptions& op
 FitRival compare(const Cloud& judges, const Surface& surface, const Pose& best, const Pose& rival,
                  double form_mm, double most_mm, double least_share, bool facing,
                  bool* rival_is_better = nullptr);
+// The same of poses that are a sheet's thickness or little apart, without sides. What stands on the seen face - nuts,
+// clamps, spatter - is nearer to the pose that lies towards it, so a point speaks only for a pose in which it lies on the
+// part, and few only where they miss the other one's ends sideways; that both faces were seen, many must say.
+FitRival compare_of_sheet(const Cloud& points, const Surface& surface, const Pose& best, const Pose& rival,
+                          double form_mm, bool& rival_is_better);
 // The largest distance of a corner of the part's box between two poses.
 double corner_distance_mm(const Surface& surface, const Pose& a, const Pose& b);
 

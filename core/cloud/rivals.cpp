@@ -16,7 +16,11 @@ constexpr std::size_t kLeastPoints = 8;
 // Of a point's face: cos of 37 degrees between normals of one facing; facings that are turned by themselves and by twos;
 // fewer points are no face.
 constexpr double kOneFacing = 0.8;
-constexpr std::size_t kMostFacings = 6, kLeastOfFacing = 3;
+constexpr std::size_t kMostFacings = 6;
+constexpr double kLeastOfFacing = 0.006;  // of the points
+// A point that misses a sheet's face lies over its inside, one that misses its end lies sideways of it: cos of 45 degrees
+// from the normal. Of the points: fewer over the inside may be what stands on the part; where the sheet ends, few tell.
+constexpr double kSideways = 0.7, kLeastShareFace = 0.04, kLeastShareEnds = 0.001;
 constexpr double kLeastHalf_mm = 1e-3;  // of the part's thickness
 // cos of 6 degrees: farther from the drawing's axes the part's own are others.
 constexpr double kOwnAxes = 0.995;
@@ -108,7 +112,8 @@ std::vector<Cloud> on_other_faces(const Cloud& cloud, const Surface& surface, co
     std::stable_sort(facings.begin(), facings.end(),
                      [](const Facing& a, const Facing& b) { return a.members.size() > b.members.size(); });
     while (!facings.empty() &&
-           (facings.size() > kMostFacings || facings.back().members.size() < kLeastOfFacing))
+           (facings.size() > kMostFacings || static_cast<double>(facings.back().members.size()) <
+                                                 kLeastOfFacing * static_cast<double>(cloud.size())))
         facings.pop_back();
     std::vector<Cloud> out;
     const auto turn = [](const Facing& facing, Cloud& turned) {
@@ -125,6 +130,52 @@ std::vector<Cloud> on_other_faces(const Cloud& cloud, const Surface& surface, co
     return out;
 }
 
+namespace {
+
+struct Votes {
+    std::size_t best = 0, rival = 0;
+};
+bool clear(std::size_t mine, std::size_t others, double least_share, std::size_t points) {
+    const auto least =
+        std::max(kLeastPoints, static_cast<std::size_t>(least_share * static_cast<double>(points)));
+    return mine >= least + kAgainstRival * others;
+}
+
+}  // namespace
+
+FitRival compare_of_sheet(const Cloud& points, const Surface& surface, const Pose& best, const Pose& rival,
+                          double form_mm, bool& rival_is_better) {
+    const double most = corner_distance_mm(surface, best, rival) + 2 * form_mm;
+    const Pose best_inverse = best.inverse(), rival_inverse = rival.inverse();
+    Votes ends, faces;
+    for (const Eigen::Vector3d& p : points.points) {
+        const Eigen::Vector3d in_best = best_inverse * p, in_rival = rival_inverse * p;
+        const auto a = surface.nearest(in_best, most), b = surface.nearest(in_rival, most);
+        if (!a || !b || std::abs(a->distance_mm - b->distance_mm) <= form_mm) continue;
+        const bool for_best = a->distance_mm < b->distance_mm;
+        const SurfacePoint &on = for_best ? *a : *b, &off = for_best ? *b : *a;
+        if (on.distance_mm > form_mm) continue;
+        const Eigen::Vector3d miss =
+            for_best ? rival.linear() * (in_rival - off.point) : best.linear() * (in_best - off.point);
+        const Eigen::Vector3d normal = (for_best ? best : rival).linear() * on.normal;
+        Votes& kind = std::abs(miss.dot(normal)) < kSideways * off.distance_mm ? ends : faces;
+        ++(for_best ? kind.best : kind.rival);
+    }
+    const auto speak_for = [&](std::size_t Votes::*one, std::size_t Votes::*other) {
+        return clear(ends.*one, ends.*other, kLeastShareEnds, points.size()) ||
+               clear(faces.*one, faces.*other, kLeastShareFace, points.size());
+    };
+    const bool for_best = speak_for(&Votes::best, &Votes::rival),
+               for_rival = speak_for(&Votes::rival, &Votes::best);
+    FitRival r;
+    r.base_from_part = rival;
+    r.for_best = ends.best + faces.best;
+    r.for_rival = ends.rival + faces.rival;
+    r.told_apart = for_best && !for_rival;
+    rival_is_better = for_rival && !for_best;
+    return r;
+}
+
 FitRival compare(const Cloud& judges, const Surface& surface, const Pose& best, const Pose& rival,
                  double form_mm, double most_mm, double least_share, bool facing, bool* rival_is_better) {
     FitRival r;
@@ -135,10 +186,8 @@ FitRival compare(const Cloud& judges, const Surface& surface, const Pose& best, 
         r.for_best += b[i] > a[i] + form_mm;
         r.for_rival += a[i] > b[i] + form_mm;
     }
-    const auto least =
-        std::max(kLeastPoints, static_cast<std::size_t>(least_share * static_cast<double>(a.size())));
-    r.told_apart = r.for_best >= least + kAgainstRival * r.for_rival;
-    if (rival_is_better) *rival_is_better = r.for_rival >= least + kAgainstRival * r.for_best;
+    r.told_apart = clear(r.for_best, r.for_rival, least_share, a.size());
+    if (rival_is_better) *rival_is_better = clear(r.for_rival, r.for_best, least_share, a.size());
     return r;
 }
 

@@ -279,6 +279,21 @@ TEST(MeshFile, ABinaryStlThatEndsBeforeItsTrianglesIsRefused) {
     }
 }
 
+TEST(MeshFile, ATextStlThatEndsBeforeItsEndIsCutShort) {
+    const TemporaryFolder folder;
+    const std::string solid =
+        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 100 0 0\nvertex 0 50 0\n"
+        "endloop\nendfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0 50 0\nvertex -9 0 0\n"
+        "endloop\nendfacet\nendsolid a\n";
+    EXPECT_TRUE(load_mesh(folder.write("one.stl", solid), "mm"));
+    for (const std::string& whole : {solid, solid + solid})
+        for (std::size_t off = 5; off < 150; off += 7) {
+            const auto cut = load_mesh(folder.write("cut.stl", whole.substr(0, whole.size() - off)), "mm");
+            ASSERT_FALSE(cut) << off;
+            EXPECT_THAT(cut.error().sentence(), HasSubstr("is cut short")) << off;
+        }
+}
+
 TEST(MeshFile, TrianglesThatTurnAgainstTheirNeighboursAreTurnedOutwards) {
     const TemporaryFolder folder;
     std::mt19937 random(3);

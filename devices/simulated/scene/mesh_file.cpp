@@ -17,6 +17,8 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <iterator>
+#include <string_view>
 #include <tuple>
 
 #include "core/geometry/welded.h"
@@ -151,6 +153,22 @@ Expected<TriangleMesh> triangulated(vtkPolyData* surface, const std::string& whe
     return mesh;
 }
 
+// A text's last solid ends by "endsolid".
+Expected<void> check_stl_text_is_whole(std::ifstream& file, const std::string& where) {
+    constexpr std::streamoff kEnd = 4096;
+    file.clear();
+    file.seekg(0, std::ios::end);
+    const std::streamoff size = file.tellg();
+    file.seekg(std::max<std::streamoff>(0, size - kEnd));
+    std::string end((std::istreambuf_iterator<char>(file)), {});
+    std::transform(end.begin(), end.end(), end.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const auto ended = end.rfind("endsolid"), facet = end.rfind("facet normal");
+    if (ended == std::string::npos || (facet != std::string::npos && facet > ended))
+        return file_error("is cut short: it ends before its \"endsolid\"", where, "copy it again");
+    return {};
+}
+
 // Of a binary STL: a header of 80 bytes, the number of triangles, 50 bytes each. VTK reads what is there and counts
 // nothing; only a text holds no zero byte.
 Expected<void> check_stl_is_whole(const std::filesystem::path& path) {
@@ -159,7 +177,16 @@ Expected<void> check_stl_is_whole(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     file.read(begin.data(), begin.size());
     const auto held = static_cast<std::size_t>(file.gcount());
-    if (std::find(begin.begin(), begin.begin() + held, '\0') == begin.begin() + held) return {};
+    if (std::find(begin.begin(), begin.begin() + held, '\0') == begin.begin() + held) {
+        std::string_view text(begin.data(), held);
+        text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+        const bool solid =
+            text.size() >= 5 && std::equal(text.begin(), text.begin() + 5, "solid", [](char c, char s) {
+                return std::tolower(static_cast<unsigned char>(c)) == s;
+            });
+        if (!solid) return {};
+        return check_stl_text_is_whole(file, path.string());
+    }
     std::uint32_t stated = 0;
     std::error_code problem;
     const std::uintmax_t size = std::filesystem::file_size(path, problem);

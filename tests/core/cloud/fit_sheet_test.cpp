@@ -2,6 +2,7 @@
 // that knows where it was seen from, or sees where the sheet ends, tells them apart.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -181,6 +182,86 @@ TEST(FitSheet, APanWithFourWallsIsFound) {
     const Placed p = placed(random, sheet, cloud);
     EXPECT_EQ(p.fit.status, FitStatus::ok) << p.fit.reason.english();
     EXPECT_LT(p.error_mm, 0.05);
+}
+
+// A pressed panel of 500 x 400 mm, curved both ways, with two steps: moved by its thickness its one face all but lies on
+// the other.
+Sheet pressed(double t) {
+    constexpr std::size_t kAlong = 36, kAcross = 28;
+    const auto step = [](double x) { return 1 / (1 + std::exp(-x)); };
+    const auto height = [&](double x, double y) {
+        return 60 * std::sin(0.9 * M_PI * x / 500) + 50 * std::sin(0.8 * M_PI * y / 400) +
+               30 * step((x - 380) / 12) + 25 * step((y - 290) / 12) * (1 - x / 1000);
+    };
+    const auto at = [&](std::size_t i, std::size_t j, double side) {
+        const double x = 500.0 * static_cast<double>(i) / kAlong,
+                     y = 400.0 * static_cast<double>(j) / kAcross, h = 1e-3;
+        const Vector3d normal =
+            Vector3d(height(x - h, y) - height(x + h, y), height(x, y - h) - height(x, y + h), 2 * h)
+                .normalized();
+        return Vector3d(Vector3d(x, y, height(x, y)) + side * t / 2 * normal);
+    };
+    Sheet sheet;
+    for (std::size_t i = 0; i < kAlong; ++i)
+        for (std::size_t j = 0; j < kAcross; ++j) {
+            sheet.push_back(
+                {{at(i, j, 1), at(i + 1, j, 1), at(i + 1, j + 1, 1), at(i, j + 1, 1)}, Side::outer});
+            sheet.push_back(
+                {{at(i, j, -1), at(i, j + 1, -1), at(i + 1, j + 1, -1), at(i + 1, j, -1)}, Side::inner});
+        }
+    const auto rim = [&](std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
+        sheet.push_back({{at(i, j, 1), at(i, j, -1), at(k, l, -1), at(k, l, 1)}, Side::rim});
+    };
+    for (std::size_t i = 0; i < kAlong; ++i) rim(i, 0, i + 1, 0), rim(i + 1, kAcross, i, kAcross);
+    for (std::size_t j = 0; j < kAcross; ++j) rim(0, j + 1, 0, j), rim(kAlong, j, kAlong, j + 1);
+    return sheet;
+}
+
+// Weld nuts on the seen face: their sides and their tops.
+void add_nuts(std::mt19937_64& random, Cloud& cloud, int count) {
+    constexpr double kRadius = 6.5, kHeight = 6.5;
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (int nut = 0; nut < count; ++nut) {
+        const std::size_t foot = random() % cloud.size();
+        const Vector3d p = cloud.points[foot], n = cloud.normals[foot].cast<double>(),
+                       u = n.cross(Vector3d::UnitY()).normalized(), v = n.cross(u);
+        for (int k = 0; k < 30; ++k) {
+            const double turn = 2 * M_PI * uniform(random);
+            const double out = k % 2 == 0 ? 1 : std::sqrt(uniform(random)),
+                         up = k % 2 == 0 ? uniform(random) : 1;
+            cloud.points.emplace_back(p + kRadius * out * (std::cos(turn) * u + std::sin(turn) * v) +
+                                      kHeight * up * n);
+            cloud.normals.push_back(n.cast<float>());
+        }
+    }
+}
+
+TEST(FitSheet, TheOneFaceOfACurvedSheetIsNotTakenForTheOther) {
+    std::mt19937_64 random(1);
+    Cloud cloud = scan(random, pressed(1), {Side::outer}, 2500, 0.03, [](const auto&) { return true; });
+    cloud.normals.clear();
+    const Placed p = placed(random, pressed(1), cloud, 0);
+    EXPECT_TRUE(p.fit.status != FitStatus::ok || p.error_mm < 0.05) << p.error_mm;
+}
+
+TEST(FitSheet, WhatStandsOnACurvedSheetDoesNotTellItsFaceButItsEndsDo) {
+    for (const bool with_rim : {false, true}) {
+        std::mt19937_64 random(1);
+        const auto all = [](const auto&) { return true; };
+        const Sheet sheet = pressed(1);
+        Cloud cloud = scan(random, sheet, {Side::inner}, 1500, 0.03, all);
+        add_nuts(random, cloud, 6);
+        if (with_rim) {
+            const Cloud rim = scan(random, sheet, {Side::rim}, 80, 0.03, all);
+            cloud.points.insert(cloud.points.end(), rim.points.begin(), rim.points.end());
+        }
+        cloud.normals.clear();
+        const Placed p = placed(random, sheet, cloud, 0);
+        if (with_rim) {
+            EXPECT_EQ(p.fit.status, FitStatus::ok) << p.fit.reason.english();
+        }
+        EXPECT_TRUE(p.fit.status != FitStatus::ok || p.error_mm < 0.05) << p.error_mm;
+    }
 }
 
 TEST(FitSheet, SolidsAndSurfacesWithoutThicknessAreFoundWithoutSides) {

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "core/profile/z_quantum.h"
+
 namespace seamwright::contour {
 namespace {
 
@@ -14,7 +16,7 @@ constexpr double kLeastRun = 1e-12;                               // of its rise
 constexpr double kLeastSpacing = 1e-9, kLeastSpacing_mm = 1e-12;  // the former of the coordinates
 // In outliers: what a point of unknown direction costs more behind lines that are left out.
 constexpr double kAfterSkip = 0.5;
-constexpr double kNoiseFloor = 0.01;  // of the spacing: below it the direction decides, not the noise
+constexpr double kNoiseFloor = 0.03;  // of the spacing: below it the direction decides, not the noise
 
 double quantile(std::vector<double>& values, double share) {
     const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
@@ -104,6 +106,11 @@ Scale estimate_scale(Workspace& w, const std::vector<int>& pick, bool along_path
     }
     scale.sx = sigma_of(a, along_path);
     scale.sz = sigma_of(b, along_path);
+    // Neighbours are rounded alike, which shows no noise and then a step of a whole quantum.
+    a.clear(), b.clear();
+    for (const int k : pick)
+        a.push_back(w.candidates[std::size_t(k)].x), b.push_back(w.candidates[std::size_t(k)].z);
+    scale.sz = std::max(scale.sz, 0.5 * z_quantum_mm(a, b));
     if (along_path) scale.sx = std::max(scale.sx, sigma_along_x(w, pick, scale));
     if (options.noise_mm > 0) {
         scale.sx = std::min(scale.sx, options.noise_mm);

@@ -5,6 +5,7 @@
 
 #include "core/median.h"
 #include "core/numbers.h"
+#include "core/profile/z_quantum.h"
 
 namespace seamwright {
 namespace {
@@ -81,7 +82,7 @@ constexpr double kAsMany = 4;
 ContourNoise contour_noise(std::span<const double> x, std::span<const double> z,
                            std::vector<double>& scratch) {
     ContourNoise noise;
-    noise.point_mm = difference_noise_mm(x, z, scratch, 1);
+    noise.point_mm = std::max(difference_noise_mm(x, z, scratch, 1), z_quantum_mm(x, z) / std::sqrt(12.0));
     if (!(noise.point_mm > 0) || !even(x, scratch)) return noise;
     const double step = std::abs(x.back() - x.front()) / double(x.size() - 1);
     const double apart = difference_noise_mm(x, z, scratch, kNoiseApart), runs = apart / noise.point_mm;

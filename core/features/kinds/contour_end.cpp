@@ -14,13 +14,14 @@
 // Its covariance, along the tangent at the point and across it. Noise model: independent, equal, across the
 // contour, its sigma from the fit's residuals, and not below what the profile's noise beside them makes likely; of
 // interpolated points 1.5 f times the variance, or what the residuals' likeness says (contour_noise.h).
-//     across   v + (k h^2 / 2)^2 + e^2 + d^2,   v that of the curve there, h = r - q / 2, k its curvature
+//     across   v + (k h^2 / 2)^2 + e^2 + d^2 + u n_z^2,   v that of the curve there, h = r - q / 2, k its curvature
 //     along    (r^2 - 2 f p^2) / 12 + (r - q)^2 / 4 + noise^2
 // k h^2 / 2: beyond the last point the contour may bend on or go on straight. e, other shape than an
 // arc: the larger of the residuals' cubic part at the point, without what noise makes of it, and the
 // distance of the last point when the mean of the last three is more than 2.5 sigma / sqrt(3) off. d: a sensor that gives
 // means of neighbours (ProfileNoise::apart()) has at the end only such of points inwards, which draws the curve that way where
-// the contour slopes; and on a bend every one lies k (m p)^2 / 6 on the inner side, of m points on either side.
+// the contour slopes; and on a bend every one lies k (m p)^2 / 6 on the inner side, of m points on either side. u: of the
+// rounding of z (z_quantum.h) what the residuals do not show, for on a level sheet all points are rounded alike; n the normal.
 // The end is spread evenly over the reach r from the last point on. A plain end: r = q = p, hence p^2 / 12; an interpolated
 // one is spread over p and over f p, narrower than evenly over both. Else the largest of
 //     - the last two steps, when longer than 1.5 p and than noise makes them: returns are missing there;
@@ -53,6 +54,7 @@
 #include "core/features/kinds/feature_kinds.h"
 #include "core/median.h"
 #include "core/numbers.h"
+#include "core/profile/z_quantum.h"
 
 namespace seamwright {
 namespace {
@@ -152,7 +154,8 @@ class ContourEnd final : public FeatureFinder {
         const Eigen::Vector4d powers(1, s, s * s, s * s * s);
         const double misfit = std::max(std::abs(curve.cubic_misfit.dot(powers)), end_misfit(curve));
         const double skew = drawn_off(curve, pitch, s);
-        const double across = curve.variance_at(s) + bend * bend + misfit * misfit + skew * skew;
+        const double across = curve.variance_at(s) + bend * bend + misfit * misfit + skew * skew +
+                              shared_rounding(curve) * normal.y() * normal.y();
         const double along =
             (reach * reach - 2 * pitch * measured) / 12 + (reach - step) * (reach - step) / 4 + noise * noise;
         feature.covariance_mm2 = across * normal * normal.transpose() + along * tangent * tangent.transpose();
@@ -208,6 +211,12 @@ class ContourEnd final : public FeatureFinder {
         for (std::size_t i = 1; i + 1 < fit_x_.size(); ++i)
             scratch_.push_back(std::abs(fit_x_[i - 1] - 2 * fit_x_[i] + fit_x_[i + 1]));
         return scratch_.size() < kEndFewestSteps ? 0 : kMadToSigma * median(scratch_) / std::sqrt(6.0);
+    }
+
+    // The variance of rounded heights that the residuals do not show: all of them are off by it alike.
+    double shared_rounding(const EndCurve& curve) const {
+        const double quantum = z_quantum_mm(sheets_.x(), sheets_.z());
+        return std::max(quantum * quantum / 12 - curve.rms_mm * curve.rms_mm, 0.0);
     }
 
     // How far across the curve the point at s is drawn off by means of neighbours: those at the end are of points inwards

@@ -13,6 +13,7 @@
 #include "contours.h"
 #include "core/features/feature.h"
 #include "core/features/kinds/feature_registry.h"
+#include "core/profile/filter.h"
 
 namespace seamwright::test {
 namespace {
@@ -358,6 +359,76 @@ TEST(ContourEndLaws, MissingReturnsBeforeTheEndMakeItUnsure) {
     };
     EXPECT_GT(sigma(98), 1.9 * sigma(90));
     EXPECT_NEAR(sigma(90), 0.1 / std::sqrt(12.0), 1e-9);
+}
+
+// A sheet folded over, its rim rolled down to where no line meets it any more.
+Profile quantised_hem(double radius, double pitch, double noise, double quantum, Random& random,
+                      Vector2d& end) {
+    std::normal_distribution<double> normal;
+    const double at_x = 2 * phase(random) - 1, at_z = 2 * phase(random) - 1,
+                 begin = -26 + pitch * phase(random);
+    Profile p;
+    for (int i = 0; begin + i * pitch < 0; ++i) {
+        const double x = begin + i * pitch, over = x + radius;
+        double z = std::clamp(5 * (x + 8), 0.0, 1.0);
+        if (over > 0) z = 1 - radius + std::sqrt(radius * radius - over * over);
+        z += at_z + noise * normal(random);
+        p.x_mm.push_back(x + at_x);
+        p.z_mm.push_back(quantum > 0 ? quantum * std::round(z / quantum) : z);
+    }
+    end = Vector2d(at_x, at_z + 1 - radius);
+    return p;
+}
+
+// Heights in steps far coarser than the noise, or without noise, lose no piece of a rim.
+TEST(ContourEndLaws, QuantisedHeightsKeepTheRim) {
+    struct Kind {
+        double radius, pitch, noise, quantum;
+    };
+    for (const Kind& k : {Kind{0.9, 0.05, 0.005, 0.02}, Kind{0.9, 0.05, 0.0025, 0.01},
+                          Kind{0.9, 0.05, 0.001, 0.005}, Kind{0.9, 0.05, 0.01, 0.02},
+                          Kind{2, 0.05, 0.002, 0.02}, Kind{0.9, 0.05, 0.005, 0}, Kind{0.9, 0.05, 0, 0}}) {
+        const auto finder = right_end();
+        Random random(21);
+        int far = 0;
+        for (int trial = 0; trial < 60; ++trial) {
+            Vector2d end;
+            Profile p = quantised_hem(k.radius, k.pitch, k.noise, k.quantum, random, end);
+            ASSERT_TRUE(filter_profile(p, FilterOptions{}));
+            const Feature f = finder->find(p);
+            if (f.status != FeatureStatus::ok || (f.point_mm - end).cwiseAbs().maxCoeff() > 0.5) ++far;
+        }
+        EXPECT_LE(far, 1) << "noise " << k.noise << " mm, quantum " << k.quantum << " mm";
+    }
+}
+
+// On a level sheet all points are rounded alike, and none of them says by how much.
+TEST(ContourEndLaws, ALevelSheetIsNoSurerThanItsQuantum) {
+    const auto finder = right_end();
+    constexpr double kQuantum = 0.02;
+    Random random(22);
+    std::normal_distribution<double> normal(0, 0.25 * kQuantum);
+    int covered = 0;
+    double error2 = 0, stated2 = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+        Vector2d end;
+        const double height = phase(random);
+        Profile p;
+        for (int i = 0; i < 500; ++i) {
+            // A slope beside the level piece, so that the quantum shows.
+            const double slope = 0.05 * std::max(0.0, 100.0 - i) * 0.05;
+            p.x_mm.push_back(0.05 * i);
+            p.z_mm.push_back(kQuantum * std::round((height + slope + normal(random)) / kQuantum));
+        }
+        ASSERT_TRUE(filter_profile(p, FilterOptions{}));
+        const Feature f = finder->find(p);
+        ASSERT_EQ(f.status, FeatureStatus::ok) << f.message;
+        const double error = f.point_mm.y() - height, variance = f.covariance_mm2(1, 1);
+        covered += error * error < 3.84 * variance;
+        error2 += error * error, stated2 += variance;
+    }
+    EXPECT_GE(covered, 285);
+    EXPECT_LT(stated2, 6 * error2);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "core/features/contour/line_fit.h"
 #include "core/features/gap/gap_flush.h"
 #include "core/features/kinds/feature_registry.h"
+#include "core/profile/z_quantum.h"
 
 namespace seamwright::test {
 namespace {
@@ -320,6 +321,39 @@ TEST_P(SharedNoise, AnApexIsAsUnsureAsItSays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfSensors, SharedNoise, testing::Values(1, 3, 5, 2));
+
+// Heights rounded to steps wider than their noise show less of it than the rounding adds; what is not rounded has no step.
+TEST(ContourNoiseLaws, RoundedHeightsAreNoLessNoisyThanTheirRounding) {
+    Random random(17);
+    std::vector<double> scratch;
+    for (const double quantum : {0.005, 0.02, 0.04})
+        for (const double noise : {0.0, 0.1, 0.3}) {
+            for (int trial = 0; trial < 20; ++trial) {
+                Profile p = sample(hem(-15, 15), 0.05, 0.01 + 0.045 * trial);
+                add_noise(p, noise * quantum, random);
+                const double at = 0.13 + 0.01 * trial;
+                for (double& z : p.z_mm) z = at + quantum * std::round(z / quantum);
+                EXPECT_NEAR(z_quantum_mm(p.x_mm, p.z_mm), quantum, 1e-9);
+                const double sigma = contour_noise_mm(p.x_mm, p.z_mm, scratch);
+                EXPECT_GE(sigma, 0.999 * quantum / std::sqrt(12.0));
+                EXPECT_LE(sigma, 0.6 * quantum);
+            }
+        }
+    for (int trial = 0; trial < 300; ++trial) {
+        Profile p = sample(trial % 2 == 0 ? hem(-15, 15) : bead(-15, 15, 1, 8, 2), 0.05);
+        add_noise(p, 1e-4 * std::pow(10.0, 0.01 * trial), random);
+        EXPECT_EQ(z_quantum_mm(p.x_mm, p.z_mm), 0);
+    }
+    // Drawn: a roof whose corners lie on the grid, a staircase, a level.
+    std::vector<double> x, roof, stairs, level;
+    for (int i = 0; i < 400; ++i) {
+        x.push_back(0.05 * i);
+        roof.push_back(0.05 * std::max(0, 100 - std::abs(i - 200)));
+        stairs.push_back(0.25 * (i / 10));
+        level.push_back(1.25);
+    }
+    for (const auto* z : {&roof, &stairs, &level}) EXPECT_EQ(z_quantum_mm(x, *z), 0);
+}
 
 }  // namespace
 }  // namespace seamwright::test

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/correction/nuisance.h"
 #include "core/correction/region_system.h"
@@ -100,17 +102,82 @@ tl::unexpected<Error> twice(const std::string& id) {
     return input_error(Text("the spot id \"{}\" occurs twice", id), "spots", "give every spot its own id");
 }
 
-// One measure under two ids: the same numbers of the same place. What was measured twice has another noise.
+// Numbers written with three decimals and read again, and poses turned into angles and back.
+constexpr double kRewrittenMm = 2e-3, kRewrittenRad = 1e-4;
+constexpr double kCopiedChance = 5e-5;  // that two measures come so near to each other of themselves
+constexpr int kMostDecimals = 6;
+
+// The step that all observed coordinates of both are multiples of, if they were rounded to decimals; else 0.
+double rounding_mm(const SpotObservation& a, const SpotObservation& b) {
+    double step = 1;
+    const auto whole = [&](const SpotObservation& s) {
+        for (int i = 0; i < 3; ++i)
+            if (s.weights[i] > 0 && std::abs(std::remainder(s.measured_mm[i], step)) > 1e-6 * step)
+                return false;
+        return true;
+    };
+    for (int decimals = 0; decimals <= kMostDecimals; ++decimals, step /= 10)
+        if (whole(a) && whole(b)) return step;
+    return 0;
+}
+
+// Along the sensor's axes, that of z given x: their product is the root of the covariance's determinant.
+Eigen::Vector3d sigmas_mm(const SpotObservation& s) {
+    if (!s.covariance_mm2) return Eigen::Vector3d::Constant(s.sigma_mm);
+    const Eigen::Matrix2d& c = *s.covariance_mm2;
+    return {std::sqrt(c(0, 0)), s.sigma_mm, std::sqrt(c.determinant() / c(0, 0))};
+}
+
+// One measure under two ids: the same numbers of the same place, or these written in another frame or with fewer decimals, so
+// that in the work object the reference and what was observed of the point are equal. What was measured twice has another
+// noise: two such coordinates differ by N(0, 2 sigma^2), and k of them come within r sigma by chance in (r / sqrt(pi))^k of all
+// cases; rounded ones are equal within half a step. Of the same pose and numbers nothing says that it was measured twice.
 bool same_measure(const SpotObservation& a, const SpotObservation& b) {
-    return a.measured_mm == b.measured_mm && a.reference_mm == b.reference_mm &&
-           a.weights.cwiseProduct(b.weights).maxCoeff() > 0 &&
-           a.workobject_from_sensor.matrix() == b.workobject_from_sensor.matrix();
+    const Pose &at_a = a.workobject_from_sensor, &at_b = b.workobject_from_sensor;
+    if (!((at_a * a.reference_mm - at_b * b.reference_mm).squaredNorm() < kRewrittenMm * kRewrittenMm))
+        return false;
+    if (a.measured_mm == b.measured_mm && a.reference_mm == b.reference_mm && at_a.matrix() == at_b.matrix())
+        return a.weights.cwiseProduct(b.weights).maxCoeff() > 0;
+    const Eigen::Vector3d apart_mm = at_b * b.measured_mm - at_a * a.measured_mm;
+    const Eigen::Vector3d sigma_a = sigmas_mm(a), sigma_b = sigmas_mm(b);
+    const double half_step_mm = rounding_mm(a, b) / 2;
+    double r = 0;
+    int shared = 0;
+    for (int i = 0; i < 3; ++i) {
+        const Eigen::Vector3d axis = at_a.linear().col(i);
+        for (int k = 0; k < 3; ++k) {
+            if (!(a.weights[i] > 0) || !(b.weights[k] > 0) ||
+                axis.cross(at_b.linear().col(k)).norm() > kRewrittenRad)
+                continue;
+            const double along_mm = std::abs(axis.dot(apart_mm));
+            if (along_mm > kRewrittenMm) return false;
+            r = std::max(r, std::max(along_mm, half_step_mm) / std::min(sigma_a[i], sigma_b[k]));
+            ++shared;
+        }
+    }
+    return shared > 0 && std::pow(r / std::sqrt(kPi), shared) < kCopiedChance;
 }
 
 tl::unexpected<Error> copied(const SpotObservation& a, const SpotObservation& b) {
-    return input_error(
-        Text("\"{}\" and \"{}\" are one measure: pose, reference and measured point are equal", a.id, b.id),
-        "spots", "keep one of them, or measure the spot once more");
+    return input_error(Text("\"{}\" and \"{}\" are one measure: their reference and measured point are equal "
+                            "in the work object",
+                            a.id, b.id),
+                       "spots", "keep one of them, or measure the spot once more");
+}
+
+// Of many spots, those whose references lie near each other along a direction that no contour follows.
+Expected<void> check_copies(std::span<const SpotObservation> spots) {
+    const Eigen::Vector3d skew = Eigen::Vector3d(0.53, 0.62, 0.58).normalized();
+    std::vector<std::pair<double, std::size_t>> along;
+    for (std::size_t n = 0; n < spots.size(); ++n)
+        along.emplace_back(skew.dot(spots[n].workobject_from_sensor * spots[n].reference_mm), n);
+    std::sort(along.begin(), along.end());
+    for (std::size_t n = 1; n < along.size(); ++n)
+        for (std::size_t k = n; k-- > 0 && along[n].first - along[k].first < kRewrittenMm;) {
+            const auto [first, then] = std::minmax(along[k].second, along[n].second);
+            if (same_measure(spots[first], spots[then])) return copied(spots[first], spots[then]);
+        }
+    return {};
 }
 
 Expected<void> check_spot(std::size_t n, const SpotObservation& s, bool measured, Accepted* accepted) {
@@ -221,19 +288,9 @@ Expected<void> check_region(std::span<const SpotObservation> spots, const Correc
         std::sort(ids.begin(), ids.end());
         const auto same = std::adjacent_find(ids.begin(), ids.end());
         if (same != ids.end()) return twice(std::string(*same));
-        std::vector<const SpotObservation*> by_measure;
-        for (const SpotObservation& s : spots) by_measure.push_back(&s);
-        const auto key = [](const SpotObservation* s) {
-            const Eigen::Vector3d &m = s->measured_mm, &r = s->reference_mm;
-            const Eigen::Vector3d at = s->workobject_from_sensor.translation();
-            return std::array{m.x(), m.y(), m.z(), r.x(), r.y(), r.z(), at.x(), at.y(), at.z()};
-        };
-        std::sort(by_measure.begin(), by_measure.end(),
-                  [&](const auto* a, const auto* b) { return key(a) < key(b); });
-        for (std::size_t n = 1; measured && n < by_measure.size(); ++n)
-            for (std::size_t k = n; k-- > 0 && key(by_measure[k]) == key(by_measure[n]);)
-                if (same_measure(*by_measure[k], *by_measure[n]))
-                    return copied(*by_measure[k], *by_measure[n]);
+        if (measured) {
+            SEAM_OK(check_copies(spots));
+        }
     }
     if (accepted) {
         for (std::size_t n = 0; n < spots.size(); ++n) {

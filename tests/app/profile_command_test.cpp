@@ -127,5 +127,30 @@ TEST_F(Cli, ProfilesInAnotherUnitAreSuspectedUnlessTheUnitIsSaid) {
     EXPECT_THAT(inch.err, HasSubstr("--unit"));
 }
 
+// One profile of a pass that lost its stripe, in millimetres and in another unit.
+TEST_F(Cli, AnUnitIsJudgedByThePassAndNotByOneOfItsProfiles) {
+    const auto pass = [](double mm_each, int lost) {
+        std::string csv = "travel_mm,profile_index,x_mm,z_mm\n";
+        unsigned state = 7;
+        const auto any = [&] {
+            state = state * 1664525U + 1013904223U;
+            return static_cast<double>(state >> 8) / (1 << 24) - 0.5;
+        };
+        for (int k = 0; k < 61; ++k)
+            for (int i = 0; i < 600; ++i) {
+                const double x = 0.1 * i - 30, z = k == lost ? 40 * any() : (x < 0 ? 1 : -2) + 0.03 * any();
+                csv += std::to_string((k - 30) / mm_each) + "," + std::to_string(k) + "," +
+                       std::to_string(x / mm_each) + "," + std::to_string(z / mm_each) + "\n";
+            }
+        return csv;
+    };
+    for (const int lost : {0, 30, 60}) {
+        const json a = answer({"align", write("pass.csv", pass(1, lost))}, 0);
+        EXPECT_EQ(a["status"], "frozen") << lost;
+    }
+    expect_refused({"align", write("pass.csv", pass(1000, 0))}, "looks like metres");
+    expect_refused({"align", write("pass.csv", pass(1e-3, 0))}, "looks like micrometres");
+}
+
 }  // namespace
 }  // namespace seamwright

@@ -232,5 +232,76 @@ TEST(TaughtGeometry, OneMeasureUnderTwoIdsIsRefused) {
               std::string::npos);
 }
 
+// A copy is one measure however it was written down.
+TEST(TaughtGeometry, ACopyIsFoundHoweverItIsWritten) {
+    Rng rng(39);
+    const auto rounded = [](const Eigen::Vector3d& v, double step) {
+        return Eigen::Vector3d((v / step).array().round() * step);
+    };
+    int found = 0, tried = 0;
+    for (int trial = 0; trial < 20; ++trial) {
+        std::vector<SpotObservation> spots = door(rng, 5 + trial % 2);
+        measure(spots, random_displacement(rng, 10, 1, {0, 0, 0}));
+        add_noise_of_own(spots, rng);
+        spots[2].measured_mm.x() += 1;  // wrong, and twice as strong by its copy
+        for (int way = 0; way < 6; ++way) {
+            SpotObservation copy = spots[2];
+            copy.id = "copy";
+            Pose& at = copy.workobject_from_sensor;
+            if (way == 0) copy.measured_mm = rounded(copy.measured_mm, 1e-4);
+            if (way == 1) copy.measured_mm = rounded(copy.measured_mm, 1e-3);
+            if (way == 2) copy.measured_mm.y() += 3;  // not observed
+            if (way == 3) at.translation() += Eigen::Vector3d(1e-9, -1e-9, 1e-9);
+            if (way == 4)  // through a rotation vector with seven digits
+                at.linear() = rotation_exp(rounded(rotation_log(at.linear()), 1e-7));
+            if (way == 5) {  // another origin, and the sensor turned about its travel
+                const Pose turned = make_pose(rotation_exp(Eigen::Vector3d(0, kPi, 0)), {1, 2, 3});
+                at = at * turned;
+                copy.reference_mm = turned.inverse() * copy.reference_mm;
+                copy.measured_mm = turned.inverse() * copy.measured_mm;
+            }
+            std::vector<SpotObservation> with = spots;
+            with.push_back(copy);
+            const auto r = solve_region(with, {});
+            ++tried;
+            found +=
+                !r && r.error().sentence().find("\"S3\" and \"copy\" are one measure") != std::string::npos;
+        }
+    }
+    EXPECT_EQ(found, tried);
+}
+
+// A second pass over the same spots is none: with a noise of its own, though a tenth of the stated one, and though both are
+// rounded to steps of a fifth of sigma from poses that the robot arrived at anew.
+TEST(TaughtGeometry, ASecondPassIsNoCopy) {
+    Rng rng(40);
+    const auto refused_of = [&](double noise, double step_mm, bool arrives_anew,
+                                const Eigen::Vector3d& weights) {
+        int refused = 0;
+        for (int trial = 0; trial < 200; ++trial) {
+            std::vector<SpotObservation> spots = door(rng, 6);
+            for (SpotObservation& s : spots) s.weights = weights;
+            measure(spots, random_displacement(rng, 10, 1, {0, 0, 0}));
+            std::vector<SpotObservation> all;
+            for (int pass = 0; pass < 2; ++pass)
+                for (SpotObservation s : spots) {
+                    s.id += pass == 0 ? "" : " again";
+                    s.measured_mm += noise * s.sigma_mm * gaussian(rng);
+                    if (step_mm > 0) s.measured_mm = (s.measured_mm / step_mm).array().round() * step_mm;
+                    if (arrives_anew) s.workobject_from_sensor.translation() += 1e-6 * gaussian(rng);
+                    all.push_back(s);
+                }
+            const auto r = solve_region(all, {});
+            refused += !r;
+        }
+        return refused;
+    };
+    EXPECT_LE(refused_of(1, 0, false, {1, 0, 1}), 2);
+    EXPECT_LE(refused_of(0.3, 0, false, {1, 0, 1}), 2);
+    EXPECT_LE(refused_of(1, 0, false, {0, 0, 1}), 2);
+    EXPECT_LE(refused_of(1, 0.01, true, {1, 0, 1}), 2);
+    EXPECT_LE(refused_of(0.1, 0.05, true, {1, 0, 1}), 2);
+}
+
 }  // namespace
 }  // namespace seamwright

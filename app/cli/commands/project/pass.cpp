@@ -12,6 +12,7 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/exchange/tables/profile_csv.h"
 #include "projects/proof/checklist.h"
+#include "projects/proof/present_names.h"
 
 namespace seamwright::cli {
 namespace {
@@ -88,7 +89,7 @@ Expected<Answer> list(const std::string& path, const std::string& spot_id) {
     SEAM_TRY(const Spot* spot, spot_of(project, spot_id, path));
     Facts facts;
     SEAM_OK(gather(file, facts));
-    const Evidence* last = newest<FrozenContour>(facts, spot_id);
+    const Evidence* last = newest_pass(project, facts, spot_id);
     const auto setup = last ? facts.setups.find(last->setup) : facts.setups.end();
     const bool holds =
         last && spot->curve && setup != facts.setups.end() && !pass_changed(*setup->second, project, spot_id);
@@ -100,7 +101,7 @@ Expected<Answer> list(const std::string& path, const std::string& spot_id) {
                    {"passes", json::array()}};
     for (const Evidence& e : facts.evidence) {
         const auto* f = std::get_if<FrozenContour>(&e.what);
-        if (!f || f->spot_id != spot_id) continue;
+        if (!f || !is_pass_of(project, facts, e, spot_id)) continue;
         answer.json["passes"].push_back({{"evidence", e.id},
                                          {"utc", e.utc},
                                          {"status", to_string(f->status)},

@@ -95,6 +95,8 @@ void MainWindow::refresh_devices() {
         const auto old = desk_.live().age(s.id);
         if (old && *old > kStale)
             sensors << tr("sensor %1 no frame since %2 s").arg(id).arg(seconds(*old));
+        else if (s.trouble.empty() && desk_.worker().busy() && !desk_.live().attached(s.id))
+            sensors << tr("sensor %1 measures").arg(id);
         else if (!s.trouble.empty() || !old)
             sensors << tr("sensor %1 no frame").arg(id);
         else

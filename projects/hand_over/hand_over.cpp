@@ -1,12 +1,15 @@
 #include "projects/hand_over/hand_over.h"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "core/geometry/notation.h"
 #include "projects/drift/drift_keeper.h"
 #include "projects/file/stored_text.h"
 #include "projects/hand_over/hand_over_detail.h"
 #include "projects/measure/measure.h"
+#include "projects/proof/present_names.h"
 
 namespace seamwright {
 namespace {
@@ -188,17 +191,30 @@ std::string reference_plot(const HandOverWriter& w, const Spot& spot) {
     return report::svg(plot);
 }
 
-std::string frozen_plot(const HandOverWriter& w, const FrozenContour& f) {
+// What all offsets share is of the one profile that the others were laid over, not of the contour: median within the jitter,
+// where a frozen contour stands still.
+double shared_mm(const FrozenContour& f, double TravelOffset::*axis) {
+    std::vector<double> near;
+    for (const TravelOffset& o : f.offsets)
+        if (std::abs(o.travel_mm) <= f.jitter_mm) near.push_back(o.*axis);
+    if (near.empty()) return 0;
+    const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
+    std::nth_element(near.begin(), middle, near.end());
+    return *middle;
+}
+
+std::string frozen_plot(const HandOverWriter& w, const std::string& spot_id, const FrozenContour& f) {
     Plot plot;
-    plot.title = w.t("Spot {}: drift over the travel", f.spot_id);
+    plot.title = w.t("Spot {}: drift over the travel", spot_id);
     plot.x_label = w.t("travel (mm)");
     plot.y_label = "mm";
     plot.width_px = kHalfWidth;
     plot.height_px = kPlotHeight;
     Series dx{"dx", {}, {}, Mark::line, colour::kBlue}, dz{"dz", {}, {}, Mark::dashed, colour::kVermilion};
+    const double x_mm = shared_mm(f, &TravelOffset::dx_mm), z_mm = shared_mm(f, &TravelOffset::dz_mm);
     for (const TravelOffset& o : f.offsets) {
-        dx.x.push_back(o.travel_mm), dx.y.push_back(o.dx_mm);
-        dz.x.push_back(o.travel_mm), dz.y.push_back(o.dz_mm);
+        dx.x.push_back(o.travel_mm), dx.y.push_back(o.dx_mm - x_mm);
+        dz.x.push_back(o.travel_mm), dz.y.push_back(o.dz_mm - z_mm);
     }
     plot.series = {dx, dz};
     plot.bands = {{-f.tolerance_mm, f.tolerance_mm, w.t("tolerance")}};
@@ -210,7 +226,7 @@ void spots_chapter(HandOverWriter& w) {
     Rows rows{{w.t("Spot"), w.t("Sensor"), w.t("Feature"), w.t("Reference x mm"), "z mm", w.t("1 sigma mm"),
                w.t("Contour"), w.t("Yaw °"), w.t("Pitch °"), w.t("Expected error mm"), w.t("Jitter mm")}};
     for (const Spot& s : w.project.spots) {
-        const Evidence* e = newest<FrozenContour>(w.facts, s.id);
+        const Evidence* e = newest_pass(w.project, w.facts, s.id);
         const FrozenContour* f = e ? &std::get<FrozenContour>(e->what) : nullptr;
         const bool old = e && (!w.facts.setups.count(e->setup) ||
                                pass_changed(*w.facts.setups.at(e->setup), w.project, s.id));
@@ -229,8 +245,8 @@ void spots_chapter(HandOverWriter& w) {
     std::vector<std::string> plots;
     for (const Spot& s : w.project.spots) {
         plots.push_back(reference_plot(w, s));
-        if (const Evidence* e = newest<FrozenContour>(w.facts, s.id))
-            plots.push_back(frozen_plot(w, std::get<FrozenContour>(e->what)));
+        if (const Evidence* e = newest_pass(w.project, w.facts, s.id))
+            plots.push_back(frozen_plot(w, s.id, std::get<FrozenContour>(e->what)));
     }
     if (!plots.empty()) w.page.figures(plots);
 }

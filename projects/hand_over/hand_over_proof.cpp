@@ -7,6 +7,7 @@
 #include "projects/proof/budget_page.h"
 #include "projects/proof/forecast.h"
 #include "projects/proof/known_shift.h"
+#include "projects/proof/present_names.h"
 #include "projects/proof/zero_shift.h"
 
 namespace seamwright {
@@ -128,7 +129,8 @@ void regions_chapter(HandOverWriter& w) {
     for (const Region& r : w.project.regions) {
         const auto forecast = forecast_region(w.project, r);
         const ProvenAccuracy proven =
-            e ? proven_accuracy(std::get<KnownShift>(e->what), r.id) : ProvenAccuracy{};
+            e ? proven_accuracy(in_present_names<KnownShift>(*e, w.facts, w.project), r.id)
+              : ProvenAccuracy{};
         std::string spots;
         for (const std::string& id : r.spot_ids) spots += (spots.empty() ? "" : ", ") + id;
         rows.push_back({r.id, spots, forecast ? w.number(3 * forecast->sigma_mm, 3) : "-",
@@ -156,7 +158,7 @@ void zero_shift_chapter(HandOverWriter& w) {
     w.page.heading(w.t("Zero shift"));
     const Evidence* e = newest<ZeroShift>(w.facts);
     if (!e) return w.page.verdict(w.t("not proven"), Tone::alarm, w.t("the unmoved part was not measured"));
-    const auto& zero = std::get<ZeroShift>(e->what);
+    const auto zero = in_present_names<ZeroShift>(*e, w.facts, w.project);
     w.stale_note(*e);
     w.page.paragraph(w.t("The part as taught, not touched, measured {} times on {}; {} refused.",
                          zero.runs.size(), w.time_of(e->utc), zero.refused));
@@ -181,7 +183,7 @@ void known_shift_chapter(HandOverWriter& w) {
     if (!e)
         return w.page.verdict(w.t("not proven"), Tone::alarm,
                               w.t("the part was not displaced by known amounts"));
-    const auto& proof = std::get<KnownShift>(e->what);
+    const auto proof = in_present_names<KnownShift>(*e, w.facts, w.project);
     w.stale_note(*e);
     const std::string how = proof.realised_by == ShiftBy::simulated_part ? w.t("the simulated part was moved")
                             : proof.realised_by == ShiftBy::robot_moves

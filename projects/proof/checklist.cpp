@@ -13,6 +13,7 @@
 #include "projects/model/part_types.h"
 #include "projects/proof/forecast.h"
 #include "projects/proof/known_shift.h"
+#include "projects/proof/present_names.h"
 #include "projects/proof/zero_shift.h"
 
 namespace seamwright {
@@ -168,7 +169,7 @@ CheckItem check_frozen(const Project& p, const Facts& facts) {
     for (const Spot& spot : p.spots) {
         if (!spot.enabled) continue;
         if (auto open = frozen_open(p, facts, spot)) return *open;
-        const Evidence* e = newest<FrozenContour>(facts, spot.id);
+        const Evidence* e = newest_pass(p, facts, spot.id);
         const auto& f = std::get<FrozenContour>(e->what);
         evidence.push_back(
             Text("spot {}: frozen, expected error {} mm at a jitter of {} mm, tolerance {} mm, {}", spot.id,
@@ -246,7 +247,7 @@ CheckItem check_zero_shift(const Project& p, const Facts& facts) {
     const Evidence* e = newest<ZeroShift>(facts);
     if (!e) return missing(kStep, Text("measure the unmoved part {} times: it must read zero", wanted));
     if (auto old = outdated(kStep, *e, p, facts)) return *old;
-    const auto& zero = std::get<ZeroShift>(e->what);
+    const auto zero = in_present_names<ZeroShift>(*e, facts, p);
     if (zero.refused > 0)
         return missing(kStep, Text("{} of {} zero-shift runs were refused; see why and repeat", zero.refused,
                                    zero.runs.size()));
@@ -270,7 +271,7 @@ CheckItem check_known_shift(const Project& p, const Facts& facts) {
     const Evidence* e = newest<KnownShift>(facts);
     if (!e) return missing(kStep, Text("displace the part by known amounts and measure it"));
     if (auto old = outdated(kStep, *e, p, facts)) return *old;
-    const auto& proof = std::get<KnownShift>(e->what);
+    const auto proof = in_present_names<KnownShift>(*e, facts, p);
     std::vector<Text> evidence;
     for (const Region& region : p.regions) {
         const ProvenAccuracy proven = proven_accuracy(proof, region.id);
@@ -404,7 +405,7 @@ std::optional<CheckItem> taught_open(const Project& project, const Spot& spot) {
 std::optional<CheckItem> frozen_open(const Project& project, const Facts& facts, const Spot& spot) {
     constexpr CheckStep kStep = CheckStep::frozen;
     if (!spot.curve) return missing(kStep, Text("record the pass of spot {} and accept it", spot.id));
-    const Evidence* e = newest<FrozenContour>(facts, spot.id);
+    const Evidence* e = newest_pass(project, facts, spot.id);
     if (!e)
         return missing(kStep,
                        Text("the file holds no accepted pass of spot {}: record it and accept it", spot.id));

@@ -12,7 +12,7 @@
 
 namespace seamwright {
 
-// Spots made ready to be measured, and a record that says of each that no frame came.
+// Spots made ready to be measured, and a record of each as not measured.
 Expected<void> Station::Impl::prepare(Job& job) {
     RunRecord& run = job.run;
     for (const Spot& spot : job.project.spots) {
@@ -23,7 +23,6 @@ Expected<void> Station::Impl::prepare(Job& job) {
         job.measurers.insert_or_assign(spot.id, std::move(measurer));
         SpotMeasurement m;
         m.spot_id = spot.id;
-        m.message = "no frame came";
         run.spots.push_back(std::move(m));
     }
     if (run.spots.empty() && !run.type_id.empty())
@@ -119,6 +118,9 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
 
     const auto measured = i.measure_all(job);
     const bool cancelled = options.cancel.stop_requested();
+    for (SpotMeasurement& m : run.spots)
+        if (m.status == SpotStatus::not_measured && m.message.empty())
+            m.message = cancelled ? Text("the run was cancelled before a frame came") : Text("no frame came");
     if (measured && !cancelled)
         if (auto watched = i.watch_drift(job); !watched) return i.failed(job, watched.error());
     auto passes = i.conclude(job, measured, cancelled);

@@ -4378,6 +4378,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <translation>Sensor %1 kein Bild</translation>
     </message>
     <message>
+        <source>sensor %1 measures</source>
+        <translation>Sensor %1 misst</translation>
+    </message>
+    <message>
         <source>robot %1 %2 ok</source>
         <translation>Roboter %1 %2 ok</translation>
     </message>
@@ -6066,7 +6070,7 @@ ausgelassen</translation>
     </message>
     <message>
         <source>Its reference is measured, its pass is not.</source>
-        <translation>Ihre Referenz ist gemessen, ihre Überfahrt nicht.</translation>
+        <translation>Ihre Referenz ist gemessen, ihre Durchfahrt nicht.</translation>
     </message>
     <message>
         <source>Run entry -&gt; exit</source>
@@ -6106,7 +6110,7 @@ ausgelassen</translation>
     </message>
     <message>
         <source>Its pass is recorded, not accepted.</source>
-        <translation>Ihre Überfahrt ist aufgenommen, nicht angenommen.</translation>
+        <translation>Ihre Durchfahrt ist aufgezeichnet, nicht angenommen.</translation>
     </message>
     <message>
         <source>Accept</source>
@@ -6227,11 +6231,11 @@ ausgelassen</translation>
     </message>
     <message>
         <source>taught, pass open</source>
-        <translation>eingelernt, Überfahrt offen</translation>
+        <translation>eingelernt, Durchfahrt offen</translation>
     </message>
     <message>
         <source>taught, pass accepted</source>
-        <translation>eingelernt, Überfahrt angenommen</translation>
+        <translation>eingelernt, Durchfahrt angenommen</translation>
     </message>
 </context>
 <context>
@@ -6901,6 +6905,10 @@ und %1 weitere</translation>
         <translation>Sensor %1   noch kein Bild</translation>
     </message>
     <message>
+        <source>sensor %1   measures, no live picture</source>
+        <translation>Sensor %1   misst, kein laufendes Bild</translation>
+    </message>
+    <message>
         <source>sensor %1   not connected</source>
         <translation>Sensor %1   nicht verbunden</translation>
     </message>
@@ -6968,7 +6976,7 @@ und %1 weitere</translation>
     </message>
     <message>
         <source>Taught path</source>
-        <translation>Geteachter Pfad</translation>
+        <translation>Eingelernter Pfad</translation>
     </message>
     <message>
         <source>A table or a robot program</source>
@@ -7100,7 +7108,7 @@ und %1 weitere</translation>
     </message>
     <message>
         <source>Choose the path as it was taught.</source>
-        <translation>Den Pfad wählen, wie er geteacht wurde.</translation>
+        <translation>Den Pfad wählen, wie er eingelernt wurde.</translation>
     </message>
     <message>
         <source>There is no run yet: measure a part first.</source>

@@ -10,6 +10,7 @@
 
 #include "widgets/profile/camera_view.h"
 #include "widgets/profile/decimate.h"
+#include "widgets/profile/profile_canvas.h"
 #include "widgets/profile/profile_plot.h"
 
 namespace seamwright {
@@ -129,6 +130,19 @@ TEST(ProfilePlot, MouseMeasuresPicksAndDragsAWindow) {
     EXPECT_NEAR(window.left(), -30, 0.3);
     EXPECT_NEAR(window.top(), -8, 0.3);
     EXPECT_NEAR(window.width(), 35, 0.5);
+    const auto* drawn = dynamic_cast<ProfileCanvas*>(canvas);
+    ASSERT_TRUE(drawn);
+    EXPECT_FALSE(drawn->window) << "it is drawn while it is dragged";
+    // One that is given up leaves nothing behind, and is none.
+    QTest::mousePress(canvas, Qt::LeftButton, {}, at(-30, 10));
+    QMouseEvent move(QEvent::MouseMove, at(-10, 0), canvas->mapToGlobal(at(-10, 0)), Qt::NoButton,
+                     Qt::LeftButton, {});
+    QApplication::sendEvent(canvas, &move);
+    EXPECT_TRUE(drawn->window);
+    plot.set_tool(ProfilePlot::Tool::inspect);
+    EXPECT_FALSE(drawn->window);
+    QTest::mouseRelease(canvas, Qt::LeftButton, {}, at(-10, 0));
+    EXPECT_EQ(dragged.size(), 1);
 
     QSignalSpy clicked(&plot, &ProfilePlot::reference_clicked);
     plot.set_tool(ProfilePlot::Tool::reference);

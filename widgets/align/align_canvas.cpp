@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "widgets/align/align_view.h"
 #include "widgets/style.h"
@@ -15,6 +16,26 @@ namespace {
 
 double value_of(const TravelOffset& offset, int row) {
     return row == 0 ? offset.dx_mm : row == 1 ? offset.dz_mm : offset.dphi_deg;
+}
+
+double at_travel(const Eigen::Vector3d& coefficients, double t) {
+    return ((coefficients[2] * t + coefficients[1]) * t + coefficients[0]) * t;
+}
+
+// The fit's constant, which the curve leaves out: the profile that the others were laid over has noise of its own, and all
+// offsets carry it. Median of what the curve leaves.
+double constant_of(const AlignmentResult& result, int row, const Eigen::Vector3d& coefficients) {
+    std::vector<double> left;
+    for (const TravelOffset& offset : result.offsets) {
+        const double v = value_of(offset, row);
+        if (offset.ok && std::isfinite(v) && offset.travel_mm >= result.curve.valid_from_mm &&
+            offset.travel_mm <= result.curve.valid_to_mm)
+            left.push_back(v - at_travel(coefficients, offset.travel_mm));
+    }
+    if (left.empty()) return 0;
+    const auto middle = left.begin() + static_cast<std::ptrdiff_t>(left.size() / 2);
+    std::nth_element(left.begin(), middle, left.end());
+    return *middle;
 }
 
 // Level, in the corner: a low plot has no room for it along the axis.
@@ -80,6 +101,8 @@ void OffsetCanvas::rebuild() {
         QCPAxis* y = rect_of(row)->axis(QCPAxis::atLeft);
         x->setRange(low - 1, high + 1);
         double reach = row < 2 ? 2.2 * options_.tolerance_mm : 0.05;
+        const Eigen::Vector3d& c = row == 0 ? result_.curve.x_coefficients : result_.curve.z_coefficients;
+        const double constant = filled_ && row < 2 ? constant_of(result_, row, c) : 0;
         if (filled_) {
             auto* dots = addGraph(x, y);
             dots->setLineStyle(QCPGraph::lsNone);
@@ -97,19 +120,17 @@ void OffsetCanvas::rebuild() {
                     unused->addData(offset.travel_mm, 0);
                     continue;
                 }
-                dots->addData(offset.travel_mm, v);
-                reach = std::max(reach, std::abs(v) * 1.1);
+                dots->addData(offset.travel_mm, v - constant);
+                reach = std::max(reach, std::abs(v - constant) * 1.1);
             }
             if (row < 2) {
                 // The curve that the verdict rests on.
                 auto* fit = addGraph(x, y);
                 fit->setPen(QPen(style::text(palette()), 1.5));
-                const Eigen::Vector3d& c =
-                    row == 0 ? result_.curve.x_coefficients : result_.curve.z_coefficients;
                 for (int i = 0; i <= 60; ++i) {
                     const double t = std::clamp(low + (high - low) * i / 60, result_.curve.valid_from_mm,
                                                 result_.curve.valid_to_mm);
-                    fit->addData(t, ((c[2] * t + c[1]) * t + c[0]) * t);
+                    fit->addData(t, at_travel(c, t));
                 }
             }
         }

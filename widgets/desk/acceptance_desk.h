@@ -19,10 +19,12 @@ class AcceptanceDesk : public QObject {
 
     // The selected region, else the first; empty: there is none.
     std::string region() const;
-    // As last judged; nullptr: not yet, or not possible (trouble()).
-    const StoredAcceptance* stored() const { return judged_.stored ? &*judged_.stored : nullptr; }
-    const Agenda* agenda() const { return judged_.agenda ? &*judged_.agenda : nullptr; }
-    const Text& trouble() const { return judged_.trouble; }
+    // As last judged of region(); nullptr: not yet, or not possible (trouble()).
+    const StoredAcceptance* stored() const {
+        return judged_.stored && current() ? &*judged_.stored : nullptr;
+    }
+    const Agenda* agenda() const { return judged_.agenda && current() ? &*judged_.agenda : nullptr; }
+    Text trouble() const { return current() ? judged_.trouble : Text(); }
     // Judges once more when something has changed since and nothing is measured; judged() says when it is done.
     void look();
 
@@ -48,6 +50,7 @@ class AcceptanceDesk : public QObject {
         std::optional<Agenda> agenda;
         Text trouble;
     };
+    bool current() const { return judged_.region_id == region(); }
     static Judged judge(const std::filesystem::path& file, const Project& project,
                         const std::string& region_id, const AcceptanceExtras& extras);
     Expected<void> edit_region(const std::function<Expected<void>(Region&)>& change, const QString& what);

@@ -1,6 +1,8 @@
 #include "widgets/pages/align_page.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "projects/measure/measure.h"
 #include "projects/proof/checklist.h"
@@ -61,15 +63,15 @@ AlignPage::AlignPage(Desk& desk, const Views& views)
 
     connect(&desk_.worker(), &StationWorker::passed, this,
             [this](const std::shared_ptr<const JudgedPass>& pass) {
-                pass_ = std::make_shared<JudgedPass>(*pass);
-                accepted_ = false;
+                std::erase_if(passes_, [&](const Recorded& r) { return r.pass.spot.id == pass->spot.id; });
+                passes_.push_back({*pass});
                 show_result();
             });
     connect(views_.align, &AlignView::jitter_dragged, this, &AlignPage::judge);
     connect(tolerance_, &QDoubleSpinBox::editingFinished, this, [this] {
-        if (pass_) judge(pass_->options.jitter_mm);
+        if (const Recorded* r = recorded()) judge(r->pass.options.jitter_mm);
     });
-    connect(&desk_, &Desk::opened, this, [this] { pass_.reset(); });
+    connect(&desk_, &Desk::opened, this, [this] { passes_.clear(); });
     connect(&desk_, &Desk::station_changed, this, [this] {
         if (isVisible()) start_->setEnabled(spot() && desk_.station().connected && !desk_.worker().busy());
     });
@@ -83,8 +85,20 @@ const Spot* AlignPage::spot() const {
     return find_spot(desk_.project(), desk_.selection().spot());
 }
 
-bool AlignPage::here() const {
-    return pass_ && spot() && pass_->spot.id == spot()->id && measured_alike(pass_->spot, *spot());
+AlignPage::Recorded* AlignPage::recorded() {
+    const Spot* s = spot();
+    if (!s) return nullptr;
+    const auto of = [&](const auto& known_as) {
+        const auto at = std::ranges::find_if(passes_, [&](const Recorded& r) {
+            return known_as(r.pass.spot.id) && measured_alike(r.pass.spot, *s);
+        });
+        return at == passes_.end() ? nullptr : &*at;
+    };
+    if (Recorded* own = of([&](const std::string& id) { return id == s->id; })) return own;
+    // A name that is nobody's any more: the spot was given another one.
+    Recorded* former = of([&](const std::string& id) { return !find_spot(desk_.project(), id); });
+    if (former) former->pass.spot.id = s->id;
+    return former;
 }
 
 QWidget* AlignPage::due() {
@@ -95,10 +109,6 @@ void AlignPage::refresh() {
     tree_->refresh();
     spot_head_->refresh();
     start_->setEnabled(spot() && desk_.station().connected);
-    if (pass_ && !here()) {
-        pass_.reset();
-        views_.align->clear();
-    }
     show_result();
 }
 
@@ -130,20 +140,26 @@ void AlignPage::start() {
 }
 
 void AlignPage::judge(double jitter_mm) {
-    if (!pass_) return;
-    pass_->options.jitter_mm = jitter_mm;
-    pass_->options.tolerance_mm = tolerance_->value();
-    if (auto judged = check_alignment(pass_->pass.profiles, pass_->options)) {
-        pass_->result = std::move(*judged);
+    Recorded* r = recorded();
+    if (!r) return;
+    r->pass.options.jitter_mm = jitter_mm;
+    r->pass.options.tolerance_mm = tolerance_->value();
+    if (auto judged = check_alignment(r->pass.pass.profiles, r->pass.options)) {
+        r->pass.result = std::move(*judged);
         show_result();
     }
 }
 
 void AlignPage::show_result() {
-    accept_->setEnabled(here() && pass_->acceptable());
-    spot_head_->set_pass_waits(here() && pass_->acceptable() && !accepted_);
-    adopt_->setEnabled(here() && pass_->result.status == AlignmentStatus::drifting);
-    if (!here()) {
+    const Recorded* here = recorded();
+    accept_->setEnabled(here && here->pass.acceptable());
+    spot_head_->set_pass_waits(here && here->pass.acceptable() && !here->accepted);
+    adopt_->setEnabled(here && here->pass.result.status == AlignmentStatus::drifting);
+    if (!here) {
+        // Its jitter is drawn before a pass is.
+        const bool other_jitter = spot() && spot()->jitter_mm != views_.align->jitter_mm();
+        if (other_jitter) views_.align->set_result({}, {}, alignment_options(*spot()));
+        if (std::exchange(shown_, false) || other_jitter) views_.align->clear();
         const bool accepted = spot() && spot()->curve;
         set_verdict(*verdict_, accepted ? tr("edge recorded earlier") : tr("no pass recorded"), Tone::plain);
         numbers_->setText(spot() ? tr("Entry %1 mm, exit %2 mm, jitter ±%3 mm")
@@ -152,9 +168,11 @@ void AlignPage::show_result() {
                                  : tr("Choose a spot."));
         return;
     }
-    const bool widened = widened_tolerance(desk_.project(), pass_->options.tolerance_mm);
-    views_.align->set_result(pass_->pass.profiles, pass_->result, pass_->options, widened);
-    const AlignmentResult& r = pass_->result;
+    const JudgedPass& pass = here->pass;
+    shown_ = true;
+    const bool widened = widened_tolerance(desk_.project(), pass.options.tolerance_mm);
+    views_.align->set_result(pass.pass.profiles, pass.result, pass.options, widened);
+    const AlignmentResult& r = pass.result;
     switch (r.status) {
         case AlignmentStatus::frozen:
             if (widened)
@@ -180,38 +198,39 @@ void AlignPage::show_result() {
             .arg(number(r.yaw_deg, 3), number(r.pitch_deg, 3),
                  std::isfinite(r.radius_mm) ? number(r.radius_mm, 0) + QStringLiteral(" mm") : tr("straight"),
                  number(r.expected_error_mm, 3));
-    text += "\n" + tr("Tolerance %1 mm, required are %2 mm")
-                       .arg(number(pass_->options.tolerance_mm, 3),
-                            number(desk_.project().requirements.sigma3_mm, 3));
-    if (!pass_->curve)
+    text += "\n" +
+            tr("Tolerance %1 mm, required are %2 mm")
+                .arg(number(pass.options.tolerance_mm, 3), number(desk_.project().requirements.sigma3_mm, 3));
+    if (!pass.curve)
         text += "\n" + tr("The feature was found in too few profiles to learn the contour's curve.");
     if (!r.cure.empty()) text += "\n" + tr("To cure: %1").arg(shown(r.cure));
     numbers_->setText(text);
 }
 
 void AlignPage::accept() {
-    if (!spot() || !pass_) return;
-    const auto after = with_pass(*spot(), *pass_);
+    const Recorded* r = recorded();
+    if (!r) return;
+    const auto after = with_pass(*spot(), r->pass);
     if (!after) {
         done(tl::unexpected(after.error()));
         return;
     }
     if (!done(desk_.edit(*after, tr("alignment")))) return;
-    accepted_ = done(desk_.record({0, {}, 0, frozen_contour(after->id, pass_->result, pass_->options)}));
+    // The edit may have made the page anew.
+    if (Recorded* now = recorded())
+        now->accepted =
+            done(desk_.record({0, {}, 0, frozen_contour(after->id, now->pass.result, now->pass.options)}));
     show_result();
 }
 
 void AlignPage::adopt() {
     const Spot* s = spot();
-    if (!s || !pass_) return;
+    const Recorded* r = recorded();
+    if (!r) return;
     const Calibration* c = calibration_of(desk_.project(), *s);
     const Pose flange_from_sensor = c ? c->flange_from_sensor : Pose::Identity();
-    const Spot after = cured(*s, pass_->result, flange_from_sensor);
-    if (done(desk_.edit(after, tr("pose")))) {
-        pass_.reset();
-        views_.align->clear();
-        show_result();
-    }
+    const Spot after = cured(*s, r->pass.result, flange_from_sensor);
+    if (done(desk_.edit(after, tr("pose")))) show_result();
 }
 
 }  // namespace seamwright

@@ -2,6 +2,8 @@
 // The frozen contour: pass entry -> trigger -> exit, verdict, accept.
 
 #include <QDoubleSpinBox>
+#include <memory>
+#include <vector>
 
 #include "widgets/pages/parts/spot_head.h"
 #include "widgets/pages/parts/spot_tree.h"
@@ -21,7 +23,12 @@ class AlignPage : public StepPage {
 
   private:
     const Spot* spot() const;
-    bool here() const;  // the pass is one of the chosen spot as it stands
+    // A recorded pass of this session, accepted or not.
+    struct Recorded {
+        JudgedPass pass;
+        bool accepted = false;
+    };
+    Recorded* recorded();  // of the chosen spot as it stands; nullptr: none
     void do_deed(SpotDeed deed);
     void start();
     void judge(double jitter_mm);
@@ -34,8 +41,8 @@ class AlignPage : public StepPage {
     QDoubleSpinBox *step_, *tolerance_;
     QPushButton *start_, *accept_, *adopt_;
     QLabel *verdict_, *numbers_;
-    std::shared_ptr<JudgedPass> pass_;
-    bool accepted_ = false;  // this pass
+    std::vector<Recorded> passes_;  // the last one of each spot
+    bool shown_ = false;            // one in the view
 };
 
 }  // namespace seamwright

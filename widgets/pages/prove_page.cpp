@@ -5,6 +5,7 @@
 
 #include "core/geometry/notation.h"
 #include "projects/proof/known_shift.h"
+#include "projects/proof/present_names.h"
 #include "projects/proof/zero_shift.h"
 #include "widgets/editors/number_box.h"
 #include "widgets/into_view.h"
@@ -253,7 +254,7 @@ void ProvePage::refresh() {
 void ProvePage::refresh_zero_shift() {
     const Evidence* e = newest<ZeroShift>(desk_.facts());
     const std::string id = region_->currentText().toStdString();
-    const ZeroShift zero = e ? std::get<ZeroShift>(e->what) : ZeroShift{};
+    const ZeroShift zero = e ? in_present_names<ZeroShift>(*e, desk_.facts(), desk_.project()) : ZeroShift{};
     const QStringList names{tr("X"), tr("Y"), tr("Z"), tr("A about Z"), tr("B about Y"), tr("C about X")};
     QVector<QStringList> rows;
     double worst = 0;
@@ -292,7 +293,14 @@ void ProvePage::refresh_zero_shift() {
 }
 
 void ProvePage::draw_zero_shift(const ZeroShift& zero) {
-    const std::string id = region_->currentText().toStdString();
+    // The runs say the region's name of their time.
+    std::string id = region_->currentText().toStdString();
+    if (const Evidence* e = newest<ZeroShift>(desk_.facts()))
+        for (std::size_t i = 0; i < zero.regions.size(); ++i)
+            if (zero.regions[i].region_id == id) {
+                id = std::get<ZeroShift>(e->what).regions[i].region_id;
+                break;
+            }
     std::vector<QString> labels;
     std::vector<TrendSeries> moves{{tr("X"), {}}, {tr("Y"), {}}, {tr("Z"), {}}};
     for (const std::int64_t number_of_run : zero.runs) {
@@ -313,7 +321,8 @@ void ProvePage::draw_zero_shift(const ZeroShift& zero) {
 void ProvePage::refresh_known_shift() {
     const Evidence* e = newest<KnownShift>(desk_.facts());
     const std::string id = region_->currentText().toStdString();
-    const KnownShift proof = e ? std::get<KnownShift>(e->what) : KnownShift{};
+    const KnownShift proof =
+        e ? in_present_names<KnownShift>(*e, desk_.facts(), desk_.project()) : KnownShift{};
     const QStringList kinds{tr("translation"), tr("rotation"), tr("both")};
     QVector<QStringList> rows;
     for (const ShiftStatistic& s : statistics(proof)) {

@@ -320,8 +320,16 @@ void TeachPage::set_kind(const QString& kind) {
 void TeachPage::picked(const QPointF& point) {
     const Spot* s = spot();
     if (!s) return;
-    const auto snapshot = desk_.live().latest(s->sensor_id);
-    if (!snapshot || snapshot->profile.size() == 0) return;
+    if (s->feature.kind != "contour-end" && s->feature.kind != "corner") return;
+    const auto live = [&]() -> Expected<std::shared_ptr<const LiveSnapshot>> {
+        SEAM_OK(stands_at(desk_, *s));
+        return live_profile(desk_, s->sensor_id);
+    }();
+    if (!live) {
+        done(tl::unexpected(live.error()));
+        return;
+    }
+    const auto& snapshot = *live;
     Spot after = *s;
     if (s->feature.kind == "contour-end") {
         double left = std::numeric_limits<double>::infinity(), right = -left;
@@ -331,15 +339,13 @@ void TeachPage::picked(const QPointF& point) {
             right = std::max(right, snapshot->profile.x_mm[i]);
         }
         after.feature.parameters["side"] = std::abs(point.x() - left) <= std::abs(point.x() - right) ? 0 : 1;
-    } else if (s->feature.kind == "corner") {
+    } else {
         // Lines to both sides of the place that was pointed at.
         after.feature.parameters["split"] = 1;
         after.feature.parameters["left_to_mm"] = point.x() - 0.5;
         after.feature.parameters["right_from_mm"] = point.x() + 0.5;
         after.feature.parameters["left_from_mm"] = point.x() - 15;
         after.feature.parameters["right_to_mm"] = point.x() + 15;
-    } else {
-        return;
     }
     change(after, tr("feature"));
 }
@@ -347,12 +353,14 @@ void TeachPage::picked(const QPointF& point) {
 void TeachPage::take_template(const QRectF& window) {
     const Spot* s = spot();
     if (!s || s->feature.kind != "template") return;
-    const auto live = live_profile(desk_, s->sensor_id);
-    const auto after =
-        live ? with_template(*s, (*live)->profile,
+    const auto dragged = [&]() -> Expected<Spot> {
+        SEAM_TRY(const auto live, live_profile(desk_, s->sensor_id));
+        SEAM_OK(stands_at(desk_, *s));
+        return with_template(*s, live->profile,
                              Eigen::AlignedBox2d(Eigen::Vector2d(window.left(), window.top()),
-                                                 Eigen::Vector2d(window.right(), window.bottom())))
-             : Expected<Spot>(tl::unexpected(live.error()));
+                                                 Eigen::Vector2d(window.right(), window.bottom())));
+    };
+    const auto after = dragged();
     if (!after) {
         done(tl::unexpected(after.error()));
         return;

@@ -4,6 +4,7 @@
 #include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/geometry/pose.h"
 #include "widgets/shown_text.h"
@@ -162,6 +163,7 @@ void ProfileCanvas::cancel_tool() {
     measure_to_.reset();
     measuring_ = false;
     press_px_.reset();
+    window.reset();
     request_live();
 }
 
@@ -487,7 +489,10 @@ void ProfileCanvas::mouseReleaseEvent(QMouseEvent* event) {
     press_px_.reset();
     const QPointF at = mm(event->position());
     if (tool == ProfilePlot::Tool::window) {
-        if (!click && window) emit plot_.window_dragged(*window);
+        // It is seen while it is dragged; what was made of it is somebody else's to show.
+        const auto dragged = std::exchange(window, std::nullopt);
+        request_live();
+        if (!click && dragged) emit plot_.window_dragged(*dragged);
         return;
     }
     if (!click || event->button() != Qt::LeftButton) return;

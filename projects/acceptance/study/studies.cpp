@@ -35,7 +35,9 @@ Expected<std::string> reference_part(const std::vector<StudyValue>& values, cons
     if (often.size() != 1)
         return input_error(Text("the values are of {} parts, {} of them measured {} times or more",
                                 parts.size(), often.size(), kType1Values),
-                           "reference part", "name it with --part");
+                           "reference part",
+                           often.empty() ? Text("measure one of them {} times or more", kType1Values)
+                                         : Text("say which of them is the reference part"));
     return often.front();
 }
 

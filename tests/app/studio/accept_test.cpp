@@ -6,13 +6,17 @@
 
 #include <QHeaderView>
 #include <QLineEdit>
+#include <QRegularExpression>
 #include <QSpinBox>
+#include <QTextBlock>
+#include <QTextDocument>
 #include <QUndoStack>
 #include <fstream>
 #include <set>
 
 #include "app/studio/studio.h"
 #include "tests/app/studio/person.h"
+#include "widgets/desk/acceptance_desk.h"
 
 namespace seamwright {
 namespace {
@@ -223,6 +227,69 @@ TEST_F(AcceptWay, RobotAndTriggerAreTakenAndGivenBack) {
     EXPECT_NE(desk().project().robots.front().trigger_latency_ms, 0);
     desk().undo_stack().undo();
     EXPECT_EQ(desk().project().robots.front().trigger_latency_ms, 0);
+}
+
+// At the narrow page every number is whole and every column seen.
+TEST_F(AcceptWay, NumbersAreWholeAndNoColumnIsCut) {
+    const DeskPerson me = begin("de");
+    me.write_parameter("tolerance_mm", "1");
+    ASSERT_TRUE(me.wait([&] { return me.find<QPushButton>("accept_next")->isEnabled(); }));
+    choose(me, kType1);
+    type(me, "study_runs", 3);
+    me.click("study_deed");
+    ASSERT_TRUE(me.wait([&] { return desk().worker().busy(); }));
+    ASSERT_TRUE(idle());
+    for (const char* name : {"study_result", "study_forecast"}) {
+        ASSERT_TRUE(me.wait([&] {
+            const auto* one = me.window().findChild<QLabel*>(name);
+            return one && one->isVisible() && !one->text().isEmpty();
+        })) << name;
+        const auto* label = me.find<QLabel>(name);
+        ASSERT_TRUE(label);
+        QTextDocument shown;
+        QTextOption words;
+        words.setWrapMode(QTextOption::WordWrap);
+        shown.setDefaultTextOption(words);
+        shown.setDefaultFont(label->font());
+        shown.setDocumentMargin(0);
+        shown.setHtml(label->text());
+        shown.setTextWidth(label->width());
+        EXPECT_LE(shown.size().width(), label->width() + 1) << name;
+        int numbers = 0;
+        for (QTextBlock b = shown.begin(); b.isValid(); b = b.next()) {
+            const QString text = b.text();
+            for (int line = 0; line + 1 < b.layout()->lineCount(); ++line) {
+                const QTextLine l = b.layout()->lineAt(line);
+                const int end = l.textStart() + l.textLength();
+                EXPECT_FALSE(end > 0 && end < text.size() && text[end - 1] == '.' && text[end].isDigit())
+                    << text.toStdString();
+            }
+            numbers += text.contains(QRegularExpression("\\d\\.\\d"));
+        }
+        EXPECT_GE(numbers, 2) << name;
+    }
+    me.look_at(me.find<QLabel>("study_result"));
+    me.picture("accept_numbers_de");
+}
+
+// What was judged of one region is not shown under another's name.
+TEST_F(AcceptWay, FiguresGoWithTheirRegion) {
+    begin("en");
+    Region second = desk().project().regions.front();
+    second.id = "second";
+    second.frame_name = "BASE_SECOND";
+    ASSERT_TRUE(desk().add(second));
+    desk().selection().select_region(desk().project().regions.front().id);
+    AcceptanceDesk acceptance(desk());
+    int judged = 0;
+    QObject::connect(&acceptance, &AcceptanceDesk::judged, &acceptance, [&] { ++judged; });
+    acceptance.look();
+    ASSERT_TRUE(QTest::qWaitFor([&] { return judged > 0 && acceptance.agenda(); }, kPatienceMs));
+    desk().selection().select_region("second");
+    EXPECT_FALSE(acceptance.agenda());
+    EXPECT_FALSE(acceptance.stored());
+    acceptance.look();
+    EXPECT_TRUE(QTest::qWaitFor([&] { return acceptance.agenda() != nullptr; }, kPatienceMs));
 }
 
 // Where the simulation does not put the parts in, the page asks.

@@ -207,6 +207,11 @@ TEST_F(AtTheDesk, AKnownShiftIsStoppedWhereItWasStartedAndIsNoProduction) {
     }
     window().grab().save(QString(SEAMWRIGHT_SCREENS) + "/prove_known_shift.png");
     ASSERT_TRUE(me.wait([&] { return !desk().runs()->empty(); }));
+    ASSERT_TRUE(
+        me.wait([&] { return me.text_of("sensor_state").contains("measures") || !desk().worker().busy(); }));
+    EXPECT_TRUE(me.text_of("sensor_state").contains("measures")) << me.text_of("sensor_state").toStdString();
+    EXPECT_TRUE(me.text_of("status_sensors").contains("measures"))
+        << me.text_of("status_sensors").toStdString();
     QTest::mouseClick(me.find<QPushButton>("cancel"), Qt::LeftButton);
     ASSERT_TRUE(idle());
     QTest::qWait(50);
@@ -251,6 +256,53 @@ TEST_F(AtTheDesk, ARecordedPassIsAcceptedNext) {
         return;
     }
     FAIL() << "no pass could be accepted";
+}
+
+TEST_F(AtTheDesk, ARecordedPassWaitsWhileAnotherSpotIsLookedAt) {
+    connected();
+    DeskPerson me(window());
+    me.step(4);
+    const std::string first = project().spots[0].id, second = project().spots[1].id;
+    const auto look_at = [&](const std::string& id) {
+        desk().selection().select_spot(id);
+        QTest::qWait(50);
+    };
+    // Before anything is recorded, the lines stand at what the spot has.
+    look_at(second);
+    EXPECT_EQ(window().views().align->jitter_mm(), project().spots[1].jitter_mm);
+    look_at(first);
+    EXPECT_EQ(window().views().align->jitter_mm(), project().spots[0].jitter_mm);
+    me.click("start_pass");
+    ASSERT_TRUE(me.wait([&] { return desk().worker().busy(); }));
+    ASSERT_TRUE(idle());
+    QTest::qWait(50);
+    const QString verdict = me.text_of("align_verdict"), numbers = me.text_of("align_numbers");
+    ASSERT_NE(verdict, "no pass recorded");
+    ASSERT_NE(verdict, "edge recorded earlier");
+    const bool may_accept = me.find<QPushButton>("accept_pass")->isEnabled();
+    look_at(second);
+    EXPECT_NE(me.text_of("align_numbers"), numbers);
+    EXPECT_FALSE(me.find<QPushButton>("accept_pass")->isEnabled());
+    EXPECT_EQ(window().views().align->verdict(), "NOT RECORDED");
+    look_at(first);
+    EXPECT_EQ(me.text_of("align_verdict"), verdict);
+    EXPECT_EQ(me.text_of("align_numbers"), numbers);
+    EXPECT_EQ(me.find<QPushButton>("accept_pass")->isEnabled(), may_accept);
+    // Another name leaves it, another pose does not; undo brings it back.
+    ASSERT_TRUE(desk().rename<Spot>(first, "pillar"));
+    QTest::qWait(50);
+    EXPECT_EQ(me.text_of("align_verdict"), verdict);
+    Spot moved = project().spots[0];
+    moved.base_from_flange.translate(Eigen::Vector3d(0, 3, 0));
+    ASSERT_TRUE(desk().edit(moved));
+    QTest::qWait(50);
+    EXPECT_NE(me.text_of("align_numbers"), numbers);
+    me.shortcut(Qt::Key_Z);
+    me.shortcut(Qt::Key_Z);
+    EXPECT_EQ(project().spots[0].id, first);
+    look_at(first);
+    EXPECT_EQ(me.text_of("align_verdict"), verdict);
+    EXPECT_EQ(me.text_of("align_numbers"), numbers);
 }
 
 TEST_F(AtTheDesk, ARegionWithoutSpotsLeadsToTheTicks) {

@@ -396,6 +396,12 @@ TEST_F(Furniture, AReferenceIsClickedForATemplateAtItsSpotAlone) {
     click({0, 10});
     EXPECT_TRUE(told.contains("does not stand at spot")) << told.toStdString();
     EXPECT_EQ(exact_text(desk.project()), before);
+    // A template no more than a reference.
+    told.clear();
+    emit plot->window_dragged({-200, -200, 400, 400});
+    QApplication::processEvents();
+    EXPECT_TRUE(told.contains("does not stand at spot")) << told.toStdString();
+    EXPECT_EQ(exact_text(desk.project()), before);
 
     ASSERT_TRUE(stands(spot().base_from_flange));
     const auto arrived = std::chrono::steady_clock::now().time_since_epoch();

@@ -59,6 +59,15 @@ TEST(Studies, OneTableIsMadeIntoAllItAllows) {
     EXPECT_TRUE(a->not_done.contains(Study::linearity));
     EXPECT_TRUE(a->not_done.contains(Study::correlation));
 
+    // Without the master, what is said holds at the desk too, which has no options.
+    auto parts = table(0.01);
+    std::erase_if(parts, [](const StudyValue& v) { return v.part == "master"; });
+    const auto b = judge_acceptance(StudyValues::of(parts), {}, settings, all());
+    ASSERT_TRUE(b) << b.error().sentence();
+    ASSERT_TRUE(b->not_done.contains(Study::type1));
+    EXPECT_THAT(b->not_done.at(Study::type1).sentence(), HasSubstr("measure one of them 25 times or more"));
+    EXPECT_THAT(b->not_done.at(Study::type1).sentence(), Not(HasSubstr("--")));
+
     const json j = acceptance_json(*a);
     for (const char* field : {"n", "mean", "s", "bias", "bias_p", "cg", "cgk", "limits", "verdict"})
         EXPECT_TRUE(j["type1"].contains(field)) << field;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "projects/measure/measure.h"
@@ -276,6 +277,112 @@ TEST_F(Checklist, ProofsAreStaleBySpotButNotByLimit) {
     // The simulated part is moved by every proof.
     project.sensors[0].settings["part"] = {{"bend_mm", 3}};
     EXPECT_TRUE(item(CheckStep::zero_shift).done());
+}
+
+// As the desk renames: with all that names it. By value: a name may be the thing's own.
+void rename_spot(Project& p, std::string from, std::string to) {
+    for (Spot& spot : p.spots)
+        if (spot.id == from) spot.id = to;
+    for (Region& region : p.regions) std::replace(region.spot_ids.begin(), region.spot_ids.end(), from, to);
+}
+void rename_sensor(Project& p, std::string from, std::string to) {
+    for (SensorSetup& sensor : p.sensors)
+        if (sensor.id == from) sensor.id = to;
+    for (Spot& spot : p.spots)
+        if (spot.sensor_id == from) spot.sensor_id = to;
+    for (Calibration& c : p.calibrations)
+        if (c.sensor_id == from) c.sensor_id = to;
+}
+
+TEST_F(Checklist, WhatWasProvenStandsUnderANewName) {
+    const Project before = project;
+    const auto all_done = [&](const char* after) {
+        for (const CheckItem& i : checklist(project, facts))
+            EXPECT_TRUE(i.done()) << after << ", " << to_string(i.step) << ": " << i.why.english();
+        for (const Spot& spot : project.spots) EXPECT_FALSE(frozen_open(project, facts, spot)) << after;
+    };
+    rename_spot(project, project.spots[1].id, "pillar");
+    all_done("a spot renamed");
+    rename_sensor(project, "A", "left sensor");
+    all_done("a sensor renamed");
+    const std::string robot = project.robots[0].id;
+    project.robots[0].id = "big";
+    for (Spot& spot : project.spots) spot.robot_id = "big";
+    for (Calibration& c : project.calibrations)
+        if (c.robot_id == robot) c.robot_id = "big";
+    all_done("a robot renamed");
+    project.regions[0].id = "door";
+    all_done("a region renamed");
+    ASSERT_FALSE(item(CheckStep::known_shift).evidence.empty() ||
+                 item(CheckStep::zero_shift).evidence.empty());
+    EXPECT_THAT(item(CheckStep::known_shift).evidence[0].english(), testing::HasSubstr("region door: 18"));
+    EXPECT_THAT(item(CheckStep::zero_shift).evidence[0].english(),
+                testing::HasSubstr("region door: mean of 3"));
+    // The names of two exchanged.
+    const std::string first = project.spots[0].id, third = project.spots[2].id;
+    rename_spot(project, first, "");
+    rename_spot(project, third, first);
+    rename_spot(project, "", third);
+    all_done("two spots' names exchanged");
+    // What follows is judged as under the old name.
+    project.spots[1].base_from_flange.translate(Eigen::Vector3d(0, 0.1, 0));
+    EXPECT_TRUE(frozen_open(project, facts, project.spots[1]));
+    EXPECT_EQ(item(CheckStep::zero_shift).status, CheckStatus::stale);
+    project.spots[1].base_from_flange = before.spots[1].base_from_flange;
+    project.spots[1].jitter_mm *= 2;
+    expect(CheckStep::frozen, CheckStatus::stale, "spot pillar was changed");
+    project = before;
+    all_done("all taken back");
+}
+
+TEST_F(Checklist, WhoTakesAFormerNameInheritsNothing) {
+    const Project before = project;
+    const std::string name = project.spots[1].id;
+    const auto open = [&](std::size_t i) {
+        return frozen_open(project, facts, project.spots[i]).has_value();
+    };
+    // A new spot under the name of one that was removed.
+    project.spots[1].base_from_flange.translate(Eigen::Vector3d(0, 40, 0));
+    EXPECT_TRUE(open(1));
+    // Another spot under it: it brings its own pass, not the removed one's.
+    project = before;
+    const std::string other = project.spots[2].id;
+    project.spots.erase(project.spots.begin() + 1);
+    rename_spot(project, other, name);
+    EXPECT_FALSE(open(1)) << "renamed, with its pass";
+    project.spots[1].base_from_flange.translate(Eigen::Vector3d(0, 40, 0));
+    EXPECT_TRUE(open(1));
+    // A new one under the former name of one that was renamed: each has its own.
+    project = before;
+    Spot fresh = project.spots[1];
+    fresh.base_from_flange.translate(Eigen::Vector3d(0, 40, 0));
+    rename_spot(project, name, "pillar");
+    project.spots.push_back(fresh);
+    EXPECT_FALSE(open(1));
+    EXPECT_TRUE(open(project.spots.size() - 1));
+    // A duplicate has no pass of its own.
+    project = before;
+    Spot twin = project.spots[1];
+    twin.id = "twin";
+    project.spots.insert(project.spots.begin() + 2, twin);
+    EXPECT_FALSE(open(1));
+    EXPECT_TRUE(open(2));
+    // Another device of the same kind under the sensor's name.
+    project = before;
+    SensorSetup second = project.sensors[0];
+    second.identity.serial = "another";
+    rename_sensor(project, "A", "B");
+    project.sensors.push_back(second);
+    EXPECT_FALSE(open(1));
+    for (Spot& spot : project.spots) spot.sensor_id = "A";
+    EXPECT_TRUE(open(1));
+    // A region of other spots under the name of one that was renamed.
+    project = before;
+    Region half = project.regions[0];
+    project.regions[0].id = "door";
+    half.spot_ids.pop_back();
+    project.regions.push_back(half);
+    EXPECT_EQ(item(CheckStep::known_shift).status, CheckStatus::stale);
 }
 
 // What all regions read as one is the part's; what one of them reads alone was taught wrong.

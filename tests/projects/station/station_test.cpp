@@ -187,6 +187,7 @@ TEST_F(StationRun, SilentRobotEndsTheRunWithoutPush) {
     const RunRecord record = run();
     EXPECT_EQ(record.status, RunStatus::device);
     EXPECT_EQ(record.captures.size(), 1u);
+    EXPECT_EQ(record.spots.back().message.english(), "no frame came");
     expect_nothing_written();
 }
 
@@ -199,6 +200,7 @@ TEST_F(StationRun, CancelledInTheMiddle) {
     const RunRecord record = run();
     EXPECT_EQ(record.status, RunStatus::cancelled);
     EXPECT_EQ(record.captures.size(), 2u);  // the third spot's frame is not waited for
+    EXPECT_THAT(record.spots.back().message.english(), testing::HasSubstr("cancelled"));
     EXPECT_THAT(cell->verdicts, testing::ElementsAre(PartVerdict::failed));
     expect_nothing_written();
 }

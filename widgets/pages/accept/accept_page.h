@@ -26,6 +26,7 @@ class AcceptPage : public StepPage {
   protected:
     void refresh() override;
     void entered() override;
+    void resizeEvent(QResizeEvent* event) override;  // a table that is too wide is said otherwise
 
   private:
     void make_fixed_head();

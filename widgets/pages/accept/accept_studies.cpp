@@ -1,6 +1,9 @@
 // What the page of the acceptance shows of the agenda, the studies and their charts.
 
 #include <QHeaderView>
+#include <QResizeEvent>
+#include <QTextDocument>
+#include <QTextOption>
 #include <cmath>
 
 #include "projects/acceptance/equipment/device_studies.h"
@@ -24,8 +27,61 @@ Tone tone_of_verdict(AcceptanceVerdict verdict) {
                                          : Tone::attention;
 }
 
-// The report's own blocks, without title and plots, as a label shows them.
-QString rich(const report::Page& page) {
+QString cell(const report::Block& b, std::size_t row, std::size_t column) {
+    return q(b.rows[row][column]).toHtmlEscaped();
+}
+
+QString as_table(const report::Block& b) {
+    const std::vector<bool> numeric = report::numeric_columns(b.rows);
+    QString html = QStringLiteral("<table width=\"100%\" cellspacing=\"0\" cellpadding=\"3\">");
+    for (std::size_t r = 0; r < b.rows.size(); ++r) {
+        html += QStringLiteral("<tr>");
+        for (std::size_t c = 0; c < b.rows[r].size(); ++c) {
+            const bool number = c < numeric.size() && numeric[c];
+            const QString side = number ? QStringLiteral("right") : QStringLiteral("left");
+            if (r == 0)
+                html += QStringLiteral("<th align=\"%1\">%2</th>").arg(side, cell(b, r, c));
+            else  // a line may end behind the point of a number
+                html += QStringLiteral("<td align=\"%1\" style=\"white-space:%3\">%2</td>")
+                            .arg(side, cell(b, r, c),
+                                 number ? QStringLiteral("nowrap") : QStringLiteral("normal"));
+        }
+        html += QStringLiteral("</tr>");
+    }
+    return html + QStringLiteral("</table>");
+}
+
+// "Cg: value 1.42, from 1.1", a paragraph a row.
+QString as_lines(const report::Block& b) {
+    QString html;
+    for (std::size_t r = 1; r < b.rows.size(); ++r) {
+        QStringList values;
+        for (std::size_t c = 1; c < b.rows[r].size(); ++c) {
+            if (b.rows[r][c].empty()) continue;
+            const QString name = c < b.rows[0].size() ? cell(b, 0, c) : QString();
+            values
+                << QStringLiteral("%1 <span style=\"white-space:nowrap\">%2</span>").arg(name, cell(b, r, c));
+        }
+        html += QStringLiteral("<p><b>%1</b>: %2</p>").arg(cell(b, r, 0), values.join(QStringLiteral(", ")));
+    }
+    return html;
+}
+
+// As a label breaks its lines.
+bool fits(const QString& html, int width_px, const QFont& font) {
+    QTextDocument document;
+    document.setDefaultFont(font);
+    document.setDocumentMargin(0);
+    QTextOption words;
+    words.setWrapMode(QTextOption::WordWrap);
+    document.setDefaultTextOption(words);
+    document.setHtml(html);
+    document.setTextWidth(width_px);
+    return document.size().width() <= width_px + 1;
+}
+
+// The report's own blocks, without title and plots, as a label of that width shows them.
+QString rich(const report::Page& page, int width_px, const QFont& font) {
     QString html;
     for (const report::Block& b : page.blocks()) {
         const QString text = q(b.text).toHtmlEscaped();
@@ -38,20 +94,8 @@ QString rich(const report::Page& page) {
                 break;
             case report::Block::Kind::table: {
                 if (!text.isEmpty()) html += QStringLiteral("<p><b>%1</b></p>").arg(text);
-                const std::vector<bool> numeric = report::numeric_columns(b.rows);
-                html += QStringLiteral("<table width=\"100%\" cellspacing=\"0\" cellpadding=\"3\">");
-                for (std::size_t r = 0; r < b.rows.size(); ++r) {
-                    html += QStringLiteral("<tr>");
-                    for (std::size_t c = 0; c < b.rows[r].size(); ++c) {
-                        const QString side = c < numeric.size() && numeric[c] ? QStringLiteral("right")
-                                                                              : QStringLiteral("left");
-                        html += (r == 0 ? QStringLiteral("<th align=\"%1\">%2</th>")
-                                        : QStringLiteral("<td align=\"%1\">%2</td>"))
-                                    .arg(side, q(b.rows[r][c]).toHtmlEscaped());
-                    }
-                    html += QStringLiteral("</tr>");
-                }
-                html += QStringLiteral("</table>");
+                const QString table = as_table(b);
+                html += fits(table, width_px, font) ? table : as_lines(b);
                 break;
             }
             default:
@@ -100,6 +144,11 @@ void AcceptPage::choose(AgendaStudy study) {
 const AgendaItem* AcceptPage::item() const {
     const Agenda* agenda = acceptance_.agenda();
     return agenda ? &agenda->of(chosen()) : nullptr;
+}
+
+void AcceptPage::resizeEvent(QResizeEvent* event) {
+    StepPage::resizeEvent(event);
+    if (isVisible() && event->size().width() != event->oldSize().width()) refresh_study();
 }
 
 void AcceptPage::entered() {
@@ -250,7 +299,9 @@ void AcceptPage::refresh_study() {
         add_chapter(page, desk_.language(), *stored->trigger);
     if (stored && study == AgendaStudy::sensor && stored->sensor)
         add_chapter(page, desk_.language(), *stored->sensor);
-    const QString result = rich(page), predicted = rich(forecast);
+    const int width_px = name_->width();
+    const QString result = rich(page, width_px, result_->font()),
+                  predicted = rich(forecast, width_px, forecast_->font());
     result_->setText(result);
     result_->setVisible(!result.isEmpty());
     if (!predicted.isEmpty())

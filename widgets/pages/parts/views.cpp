@@ -80,7 +80,10 @@ void ViewFeeder::age() {
     }
     caption(sensor.empty()                  ? QString()
             : desk_.live().attached(sensor) ? tr("sensor %1   no frame yet").arg(name)
-                                            : tr("sensor %1   not connected").arg(name),
+            // A proof that opens the devices for itself.
+            : desk_.station().connected && desk_.worker().busy()
+                ? tr("sensor %1   measures, no live picture").arg(name)
+                : tr("sensor %1   not connected").arg(name),
             false);
     if (last_number_ == 0 && last_sensor_.empty()) return;
     last_number_ = 0;

@@ -171,16 +171,6 @@ GapSides::Found GapSides::two_cores(int least, double panel_mm, Core& before, Co
     }
     for (std::size_t k = left_end + 1; k < right_begin; ++k)
         if (as_high(k, least)) return Found::ambiguous;
-    // Two panels in flush with nothing seen between them are like one with a dark streak: where there is another break, which
-    // is which?
-    if (!ground_seen && in_line(left_end, right_begin))
-        for (std::size_t k = 0; k + 1 < n; ++k) {
-            const auto within = [&](std::size_t from, std::size_t to) { return k >= from && k + 1 <= to; };
-            const bool own = within(left_first, left_end) || within(left_end, right_begin) ||
-                             within(right_begin, right_last);
-            const bool whole = sheets_[k].count >= least && sheets_[k + 1].count >= least;
-            if (!own && whole && is_hole(sheets_[k].last, sheets_[k + 1].first)) return Found::ambiguous;
-        }
     a = left_end, b = right_begin;
     before = {raw_[sheets_[left_first].first], raw_[sheets_[left_end].last]};
     after = {raw_[sheets_[right_begin].first], raw_[sheets_[right_last].last]};

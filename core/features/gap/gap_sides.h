@@ -10,7 +10,7 @@
 // depth that is seen, is the ground: no part reaches it. What else lies between them as high as a panel, beyond a dark streak or
 // a step, belongs to a panel: that on its side of the ground, else that whose line it continues. It cannot be told which the
 // parts are where neither tells, where a part may be ground itself (a higher sheet of a third of its size on either side, and
-// short), where a ledge lies between them, and where two panels in flush show no ground and another break beside the gap.
+// short), and where a ledge or, in flush and without ground, a strip between two breaks lies between them.
 //
 // The filter judges a point by its spacing and takes the steep end of a rounded rim for outliers or for
 // pieces of their own: the last of what is seen of the rim is then missing, and a gap is measured too wide by

@@ -101,7 +101,7 @@ TEST(Studies, WhatIsNotKnownIsAskedFor) {
     refused("no values of part \"nobody\"");
     settings.part.clear();
     std::erase_if(values, [](const StudyValue& v) { return v.part == "master"; });
-    refused("--part");
+    refused("reference part");
     settings.part = "P1";
     const auto few = judge_acceptance(StudyValues::of(values), {}, settings, type1);
     ASSERT_TRUE(few);

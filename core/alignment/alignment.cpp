@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/alignment/drift.h"
 #include "core/alignment/pass_registration.h"
 #include "core/correction/contour_fit.h"
 #include "core/median.h"
@@ -15,7 +16,6 @@ namespace {
 
 using namespace alignment;
 
-constexpr double kShortestTravel_mm = 1.0;
 // Below this share within the jitter the contour does not stay the same.
 constexpr double kSteadyShare = 0.8;
 constexpr double kSignificant = 3.0;
@@ -32,13 +32,6 @@ double quantile(std::vector<double> v, double share) {
     const auto place = v.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(v.size() - 1));
     std::nth_element(v.begin(), place, v.end());
     return *place;
-}
-
-double rise(const PolynomialFit& f, double y, double from, double to) {
-    const double s = std::clamp(y, from, to);
-    const auto& c = f.coefficient;
-    const double slope = c[1] + s * (2 * c[2] + s * 3 * c[3]);
-    return s * (c[1] + s * (c[2] + s * c[3])) + slope * (y - s);
 }
 
 Expected<void> check_pass(std::span<const TravelProfile> pass, const AlignmentOptions& options) {
@@ -58,17 +51,6 @@ Expected<void> check_pass(std::span<const TravelProfile> pass, const AlignmentOp
                                "give one x and one z a point");
     }
     return {};
-}
-
-// Profiles within the window, the trigger's neighbours first.
-std::vector<std::size_t> outwards_from_trigger(std::span<const TravelProfile> pass, double window_mm) {
-    std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < pass.size(); ++i)
-        if (std::abs(pass[i].travel_mm) <= window_mm) order.push_back(i);
-    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) {
-        return std::abs(pass[a].travel_mm) < std::abs(pass[b].travel_mm);
-    });
-    return order;
 }
 
 // A straight profile slides on itself: when most say so, all are judged across their common direction, which is
@@ -91,116 +73,7 @@ Eigen::Vector2d common_sliding(std::vector<Registered>& found) {
     return Eigen::Vector2d::Zero();
 }
 
-// How the contour moves in the profile along the travel.
-struct Drift {
-    std::vector<double> travel_mm, dx_mm, dz_mm, dphi_deg;
-    PolynomialFit x, z, phi;
-    double from = 0, to = 0;  // travel that was seen, the trigger included
-    Eigen::Vector2d along = Eigen::Vector2d::Zero();
-
-    void add(const TravelOffset& o) {
-        travel_mm.push_back(o.travel_mm);
-        dx_mm.push_back(o.dx_mm);
-        dz_mm.push_back(o.dz_mm);
-        dphi_deg.push_back(o.dphi_deg);
-    }
-    // False: too little was seen.
-    bool fit() {
-        if (travel_mm.size() < static_cast<std::size_t>(kFewestProfiles)) return false;
-        const auto [low, high] = std::minmax_element(travel_mm.begin(), travel_mm.end());
-        from = std::min(0.0, *low), to = std::max(0.0, *high);
-        if (*high - *low < kShortestTravel_mm) return false;
-        x = fit_lowest_order(travel_mm, dx_mm, 1, 3);
-        z = fit_lowest_order(travel_mm, dz_mm, 1, 3);
-        phi = fit_lowest_order(travel_mm, dphi_deg, 1, 1);
-        return x.ok && z.ok && phi.ok;
-    }
-    // The farthest that the contour stands off within the jitter; after a turn that takes `share` of the slopes away.
-    double farthest(double jitter_mm, double share = 0) const {
-        constexpr int kSteps = 50;
-        double most = 0;
-        for (int k = -kSteps; k <= kSteps; ++k) {
-            const double at = jitter_mm * k / kSteps;
-            most = std::max(most, std::hypot(rise(x, at, from, to) - share * x.coefficient[1] * at,
-                                             rise(z, at, from, to) - share * z.coefficient[1] * at));
-        }
-        return most;
-    }
-};
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// What the polynomials leave of the motion within the jitter, and where: a notch, a weld nugget, a wave. One profile alone is a
-// profile gone wrong, so the middle of three neighbours counts; and what exceeds the noise, which is told by neighbours: beside
-// noise alone a line between two of them misses the one between by as much as the fit does.
-struct StandOff {
-    double most_mm = 0, at_mm = 0;
-};
-StandOff left_over(const Drift& drift, double jitter_mm) {
-    constexpr std::size_t kFewest = 7;
-    constexpr double kAlike = 1.8;            // of the noise: what is left is no noise
-    constexpr double kBeyond = 3, kSeen = 2;  // times the noise; the latter where it is none
-    const std::size_t n = drift.travel_mm.size();
-    if (n < kFewest) return {};
-    std::vector<std::size_t> order(n);
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](auto a, auto b) { return drift.travel_mm[a] < drift.travel_mm[b]; });
-    const auto travel = [&](std::size_t i) { return drift.travel_mm[order[i]]; };
-    std::vector<Eigen::Vector2d> middle(n, Eigen::Vector2d::Zero());
-    std::vector<bool> counts(n, false);
-    for (const Eigen::Index axis : {0, 1}) {
-        const PolynomialFit& f = axis == 0 ? drift.x : drift.z;
-        const std::vector<double>& value = axis == 0 ? drift.dx_mm : drift.dz_mm;
-        std::vector<double> rest(n), size, rough;
-        for (std::size_t i = 0; i < n; ++i) {
-            rest[i] = value[order[i]] - f.coefficient[0] - rise(f, travel(i), drift.from, drift.to);
-            size.push_back(std::abs(rest[i]));
-        }
-        for (std::size_t i = 1; i + 1 < n; ++i) {
-            const double wide = travel(i + 1) - travel(i - 1);
-            const double w = wide > 0 ? (travel(i + 1) - travel(i)) / wide : 0.5;
-            rough.push_back(std::abs(rest[i] - w * rest[i - 1] - (1 - w) * rest[i + 1]) /
-                            std::sqrt(1 + w * w + (1 - w) * (1 - w)));
-        }
-        const double noise = kMadToSigma * median(rough);
-        const bool alike = kMadToSigma * median(size) > kAlike * noise;
-        for (std::size_t i = 1; i + 1 < n; ++i) {
-            const double a = rest[i - 1], b = rest[i], c = rest[i + 1];
-            middle[i][axis] = std::max(std::min(a, b), std::min(std::max(a, b), c));
-            counts[i] = counts[i] || std::abs(middle[i][axis]) > (alike ? kSeen : kBeyond) * noise;
-        }
-    }
-    StandOff most;
-    for (std::size_t i = 0; i < n; ++i)
-        if (counts[i] && std::abs(travel(i)) <= jitter_mm && middle[i].norm() > most.most_mm)
-            most = {middle[i].norm(), travel(i)};
-    return most;
-}
-
-// How far, two sigma, the contour stands now here and now there from profile to profile within the jitter, which no travel
-// explains (a ripple shorter than the steps tell, a sensor that shakes); 0 where the registration's own noise does.
-double scatter_beyond(const Reference& best, const Drift& drift, double jitter_mm) {
-    constexpr std::size_t kFewest = 7;
-    constexpr double kBeyond = 5;  // of the registration's sigma
-    std::vector<double> stated;
-    for (const Registered& r : best.found)
-        if (r.ok) stated.push_back(r.sigma_mm);
-    double most = 0;
-    for (const bool along_x : {true, false}) {
-        const PolynomialFit& f = along_x ? drift.x : drift.z;
-        const std::vector<double>& value = along_x ? drift.dx_mm : drift.dz_mm;
-        std::vector<double> rest;
-        for (std::size_t i = 0; i < value.size(); ++i)
-            if (std::abs(drift.travel_mm[i]) <= jitter_mm)
-                rest.push_back(std::abs(value[i] - f.coefficient[0] -
-                                        rise(f, drift.travel_mm[i], drift.from, drift.to)));
-        if (rest.size() < kFewest) continue;
-        const double sigma = kMadToSigma * median(rest);
-        if (sigma > kBeyond * median(stated)) most = std::max(most, 2 * sigma);
-    }
-    return most;
-}
 
 // A stretch of travel within the jitter in which the contour is not found.
 struct Unseen {
@@ -255,70 +128,6 @@ Unseen unseen_within(const std::vector<TravelOffset>& offsets, const AlignmentOp
     }
     close(kInfinity);
     return worst;
-}
-
-// Within the noise of both slopes the two drifts are one.
-double differ_mm(const Drift& own, const Drift& drift, double jitter_mm) {
-    constexpr double kSure = 4;  // sigmas
-    const auto differs = [](const PolynomialFit& a, const PolynomialFit& b) {
-        const double by = a.coefficient[1] - b.coefficient[1];
-        return std::abs(by) > kSure * std::hypot(a.coefficient_sigma[1], b.coefficient_sigma[1]) ? by : 0.0;
-    };
-    return std::hypot(differs(own.x, drift.x), differs(own.z, drift.z)) * jitter_mm;
-}
-
-// What counts is the drift where the reference point is. The whole contour's motion is another one where the profile is broken
-// (a gap, a rim over a frame), where a part of it stands still (a swage beside an edge that runs off), and where a part grows:
-// so the unbroken piece with the point, what is near it, and the end that it lies on are followed as well, and the one that
-// differs and drifts farthest is taken. A field of view that cuts the contour makes an end that drifts against it, never farther.
-// Answers by how much it differs within the jitter.
-double follow_point(const Reference& best, std::span<const TravelProfile> pass,
-                    const AlignmentOptions& options, Drift& drift, std::vector<TravelOffset>& offsets) {
-    constexpr double kNear_mm = 8, kNearest_mm = 4;
-    if (!options.reference_mm || !drift.along.isZero()) return 0;
-    const Eigen::Vector2d point = *options.reference_mm;
-    const auto order = outwards_from_trigger(pass, options.window_mm);
-    const Drift whole = drift;
-    const std::vector<TravelOffset> whole_offsets = offsets;
-    double most = 0;
-    const auto consider = [&](const std::vector<TravelOffset>& own_offsets, bool farther) {
-        Drift own;
-        for (std::size_t i = 0; i < pass.size(); ++i)
-            if (i != best.index && own_offsets[i].ok) own.add(own_offsets[i]);
-        if (!own.fit()) return;
-        const double apart = differ_mm(own, whole, options.jitter_mm);
-        if (!(apart > 0) || (farther && own.farthest(options.jitter_mm) <= drift.farthest(options.jitter_mm)))
-            return;
-        most = std::max(most, apart);
-        drift = std::move(own);
-        offsets = own_offsets;
-    };
-    for (const double within_mm : {kInfinity, kNear_mm, kNearest_mm}) {
-        const auto piece = register_piece(best, pass, order, point, within_mm);
-        if (!piece) continue;
-        std::vector<TravelOffset> own = whole_offsets;
-        for (std::size_t i = 0; i < pass.size(); ++i) {
-            const Registered& r = piece->found[i];
-            if (i == piece->index) continue;
-            own[i] = {pass[i].travel_mm};
-            if (r.ok)
-                own[i] = {pass[i].travel_mm, r.shift.x(), r.shift.y(), deg_from_rad(r.phi), r.rms, true};
-        }
-        consider(own, std::isfinite(within_mm));
-    }
-    const auto ends = end_offsets(best, pass, order, point);
-    if (!ends.empty()) {
-        std::vector<TravelOffset> own = whole_offsets;
-        for (std::size_t i = 0; i < pass.size(); ++i) {
-            if (i == best.index) continue;
-            own[i].ok = own[i].ok && ends[i];
-            if (!own[i].ok) continue;
-            own[i].dx_mm += ends[i]->x();
-            own[i].dz_mm += ends[i]->y();
-        }
-        consider(own, true);
-    }
-    return most;
 }
 
 // Angles, their sigmas, the cure and the contour's radius.
@@ -507,12 +316,12 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
         drift.add(result.offsets[i]);
     }
     if (!drift.fit()) return too_few(drift.travel_mm.size() + 1);
+    const double scatter_mm = scatter_beyond(*best, drift, options.jitter_mm);
     const double apart_mm = follow_point(*best, pass, options, drift, result.offsets);
     state_direction(drift, options.jitter_mm, result);
     state_error(drift, options.jitter_mm, result);
     const bool lost = state_shape(*best, pass, options, result);
     const StandOff off = left_over(drift, options.jitter_mm);
-    const double scatter_mm = scatter_beyond(*best, drift, options.jitter_mm);
     const Unseen unseen = unseen_within(result.offsets, options);
     result.shape_change_mm = std::max({result.shape_change_mm, off.most_mm, apart_mm, scatter_mm});
     const bool changes = lost || unseen.lost || result.shape_change_mm > options.tolerance_mm;

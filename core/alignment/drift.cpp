@@ -1,0 +1,188 @@
+#include "core/alignment/drift.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "core/median.h"
+#include "core/numbers.h"
+
+namespace seamwright::alignment {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double rise(const PolynomialFit& f, double y, double from, double to) {
+    const double s = std::clamp(y, from, to);
+    const auto& c = f.coefficient;
+    const double slope = c[1] + s * (2 * c[2] + s * 3 * c[3]);
+    return s * (c[1] + s * (c[2] + s * c[3])) + slope * (y - s);
+}
+
+// Within the noise of both slopes the two drifts are one.
+double differ_mm(const Drift& own, const Drift& drift, double jitter_mm) {
+    constexpr double kSure = 4;  // sigmas
+    const auto differs = [](const PolynomialFit& a, const PolynomialFit& b) {
+        const double by = a.coefficient[1] - b.coefficient[1];
+        return std::abs(by) > kSure * std::hypot(a.coefficient_sigma[1], b.coefficient_sigma[1]) ? by : 0.0;
+    };
+    return std::hypot(differs(own.x, drift.x), differs(own.z, drift.z)) * jitter_mm;
+}
+
+}  // namespace
+
+std::vector<std::size_t> outwards_from_trigger(std::span<const TravelProfile> pass, double window_mm) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < pass.size(); ++i)
+        if (std::abs(pass[i].travel_mm) <= window_mm) order.push_back(i);
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) {
+        return std::abs(pass[a].travel_mm) < std::abs(pass[b].travel_mm);
+    });
+    return order;
+}
+
+void Drift::add(const TravelOffset& o) {
+    travel_mm.push_back(o.travel_mm);
+    dx_mm.push_back(o.dx_mm);
+    dz_mm.push_back(o.dz_mm);
+    dphi_deg.push_back(o.dphi_deg);
+}
+
+bool Drift::fit() {
+    if (travel_mm.size() < static_cast<std::size_t>(kFewestProfiles)) return false;
+    const auto [low, high] = std::minmax_element(travel_mm.begin(), travel_mm.end());
+    from = std::min(0.0, *low), to = std::max(0.0, *high);
+    if (*high - *low < kShortestTravel_mm) return false;
+    x = fit_lowest_order(travel_mm, dx_mm, 1, 3);
+    z = fit_lowest_order(travel_mm, dz_mm, 1, 3);
+    phi = fit_lowest_order(travel_mm, dphi_deg, 1, 1);
+    return x.ok && z.ok && phi.ok;
+}
+
+double Drift::farthest(double jitter_mm, double share) const {
+    constexpr int kSteps = 50;
+    double most = 0;
+    for (int k = -kSteps; k <= kSteps; ++k) {
+        const double at = jitter_mm * k / kSteps;
+        most = std::max(most, std::hypot(rise(x, at, from, to) - share * x.coefficient[1] * at,
+                                         rise(z, at, from, to) - share * z.coefficient[1] * at));
+    }
+    return most;
+}
+
+StandOff left_over(const Drift& drift, double jitter_mm) {
+    constexpr std::size_t kFewest = 7;
+    constexpr double kAlike = 1.8;            // of the noise: what is left is no noise
+    constexpr double kBeyond = 3, kSeen = 2;  // times the noise; the latter where it is none
+    const std::size_t n = drift.travel_mm.size();
+    if (n < kFewest) return {};
+    std::vector<std::size_t> order(n);
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](auto a, auto b) { return drift.travel_mm[a] < drift.travel_mm[b]; });
+    const auto travel = [&](std::size_t i) { return drift.travel_mm[order[i]]; };
+    std::vector<Eigen::Vector2d> middle(n, Eigen::Vector2d::Zero());
+    std::vector<bool> counts(n, false);
+    for (const Eigen::Index axis : {0, 1}) {
+        const PolynomialFit& f = axis == 0 ? drift.x : drift.z;
+        const std::vector<double>& value = axis == 0 ? drift.dx_mm : drift.dz_mm;
+        std::vector<double> rest(n), size, rough;
+        for (std::size_t i = 0; i < n; ++i) {
+            rest[i] = value[order[i]] - f.coefficient[0] - rise(f, travel(i), drift.from, drift.to);
+            size.push_back(std::abs(rest[i]));
+        }
+        for (std::size_t i = 1; i + 1 < n; ++i) {
+            const double wide = travel(i + 1) - travel(i - 1);
+            const double w = wide > 0 ? (travel(i + 1) - travel(i)) / wide : 0.5;
+            rough.push_back(std::abs(rest[i] - w * rest[i - 1] - (1 - w) * rest[i + 1]) /
+                            std::sqrt(1 + w * w + (1 - w) * (1 - w)));
+        }
+        const double noise = kMadToSigma * median(rough);
+        const bool alike = kMadToSigma * median(size) > kAlike * noise;
+        for (std::size_t i = 1; i + 1 < n; ++i) {
+            const double a = rest[i - 1], b = rest[i], c = rest[i + 1];
+            middle[i][axis] = std::max(std::min(a, b), std::min(std::max(a, b), c));
+            counts[i] = counts[i] || std::abs(middle[i][axis]) > (alike ? kSeen : kBeyond) * noise;
+        }
+    }
+    StandOff most;
+    for (std::size_t i = 0; i < n; ++i)
+        if (counts[i] && std::abs(travel(i)) <= jitter_mm && middle[i].norm() > most.most_mm)
+            most = {middle[i].norm(), travel(i)};
+    return most;
+}
+
+double scatter_beyond(const Reference& best, const Drift& drift, double jitter_mm) {
+    constexpr std::size_t kFewest = 7;
+    constexpr double kBeyond = 5;  // of the registration's sigma
+    std::vector<double> stated;
+    for (const Registered& r : best.found)
+        if (r.ok) stated.push_back(r.sigma_mm);
+    double most = 0;
+    for (const bool along_x : {true, false}) {
+        const PolynomialFit& f = along_x ? drift.x : drift.z;
+        const std::vector<double>& value = along_x ? drift.dx_mm : drift.dz_mm;
+        std::vector<double> rest;
+        for (std::size_t i = 0; i < value.size(); ++i)
+            if (std::abs(drift.travel_mm[i]) <= jitter_mm)
+                rest.push_back(std::abs(value[i] - f.coefficient[0] -
+                                        rise(f, drift.travel_mm[i], drift.from, drift.to)));
+        if (rest.size() < kFewest) continue;
+        const double sigma = kMadToSigma * median(rest);
+        if (sigma > kBeyond * median(stated)) most = std::max(most, 2 * sigma);
+    }
+    return most;
+}
+
+double follow_point(const Reference& best, std::span<const TravelProfile> pass,
+                    const AlignmentOptions& options, Drift& drift, std::vector<TravelOffset>& offsets) {
+    constexpr double kNear_mm = 8, kNearest_mm = 4;
+    if (!options.reference_mm || !drift.along.isZero()) return 0;
+    const Eigen::Vector2d point = *options.reference_mm;
+    const auto order = outwards_from_trigger(pass, options.window_mm);
+    const Drift whole = drift;
+    const std::vector<TravelOffset> whole_offsets = offsets;
+    double most = 0;
+    const auto consider = [&](const std::vector<TravelOffset>& own_offsets, bool farther) {
+        Drift own;
+        for (std::size_t i = 0; i < pass.size(); ++i)
+            if (i != best.index && own_offsets[i].ok) own.add(own_offsets[i]);
+        if (!own.fit()) return;
+        const double apart = differ_mm(own, whole, options.jitter_mm);
+        if (!(apart > 0) || (farther && own.farthest(options.jitter_mm) <= drift.farthest(options.jitter_mm)))
+            return;
+        most = std::max(most, apart);
+        drift = std::move(own);
+        offsets = own_offsets;
+    };
+    for (const double within_mm : {kInfinity, kNear_mm, kNearest_mm}) {
+        const auto piece = register_piece(best, pass, order, point, within_mm);
+        if (!piece) continue;
+        std::vector<TravelOffset> own = whole_offsets;
+        for (std::size_t i = 0; i < pass.size(); ++i) {
+            const Registered& r = piece->found[i];
+            if (i == piece->index) continue;
+            own[i] = {pass[i].travel_mm};
+            if (r.ok)
+                own[i] = {pass[i].travel_mm, r.shift.x(), r.shift.y(), deg_from_rad(r.phi), r.rms, true};
+        }
+        consider(own, std::isfinite(within_mm));
+    }
+    const auto ends = end_offsets(best, pass, order, point);
+    if (!ends.empty()) {
+        std::vector<TravelOffset> own = whole_offsets;
+        for (std::size_t i = 0; i < pass.size(); ++i) {
+            if (i == best.index) continue;
+            own[i].ok = own[i].ok && ends[i];
+            if (!own[i].ok) continue;
+            own[i].dx_mm += ends[i]->x();
+            own[i].dz_mm += ends[i]->y();
+        }
+        consider(own, true);
+    }
+    return most;
+}
+
+}  // namespace seamwright::alignment

@@ -110,6 +110,9 @@ Expected<void> check_replaceable(const std::filesystem::path& path) {
 
 Expected<void> write_text_file(const std::filesystem::path& path, std::string_view text) {
     if (path.filename().empty()) return file_error("names no file", path.string(), "give the path of a file");
+    if (path.native().starts_with("--"))
+        return input_error("is an option, not the name of a file", path.string(),
+                           "give a name, or ./ before one that begins like that");
     const auto failed = [&](const Text& message) {
         return file_error(Text("cannot be written ({})", message), path.string());
     };

@@ -23,8 +23,8 @@ Expected<std::string> read_text_file(const std::filesystem::path& path,
 // that a crash leaves either the old file or the new one. A link stays: what it leads to is written so. A
 // device, a FIFO and a descriptor of this process (/dev/stdout, /dev/fd/3, /proc/self/fd/1) stay too: written
 // through, as a shell writes, and a FIFO is waited for until somebody reads it. Error (file) when the folder
-// is missing or not writable. Error (input) where a project, a recording or another database (SQLite) stands: what is
-// written here never takes the place of one.
+// is missing or not writable. Error (input) where a project, a recording or another database (SQLite) stands, which what is
+// written here never takes the place of, and of a path that begins as an option does ("--help").
 Expected<void> write_text_file(const std::filesystem::path& path, std::string_view text);
 
 // Error (input) where that stands.

@@ -9,9 +9,9 @@
 // A start that is 1 when the line is first heard, or after it was lost, starts nothing: it has to be seen at 0.
 // Dropped before busy: the call is withdrawn. Dropped while busy: the part is given up (LineLink::given_up), its result
 // stays `done` until the next start, which may come at once: ready stands beside it. So does that of a part which ended
-// while the line was away, where its start has gone meanwhile. A line that comes back with start 1 and another part than it
-// called for has given that one up: its call for the other is answered by not_measured, never by the former's result. Not taken in call_timeout: done with not_measured. Not dropped in drop_timeout: an
-// alarm, and nothing starts until it is.
+// while the line was away, where its start has gone meanwhile. A line that comes back with start 1 and another part than
+// it called for has given that one up: its call for the other is answered by not_measured, never by the former's result.
+// Not taken in call_timeout: done with not_measured. Not dropped in drop_timeout: an alarm, and nothing starts until it is.
 // The line is silent when its heartbeat has not changed for heartbeat_timeout (0: not watched): a waiting call is
 // withdrawn, nothing starts, an alarm.
 //

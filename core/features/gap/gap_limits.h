@@ -6,5 +6,6 @@ namespace seamwright::gap {
 inline constexpr double kNoiseGate = 4.2;  // sigma
 inline constexpr double kGoesOn = 5;       // sigma
 inline constexpr int kLeastGround = 3;     // points
+inline constexpr int kEndPoints = 12;      // of a sheet, that tell where it goes on
 
 }  // namespace seamwright::gap

@@ -67,6 +67,15 @@ GapSides::Found GapSides::two_pieces(int least, Core& before, Core& after) const
     return Found::both;
 }
 
+// Over whatever divides them: what the two show beside it lies on one line.
+bool GapSides::in_line(const Sheet& a, const Sheet& b) const {
+    const End before = end_of(a, true, kLinePoints), after = end_of(b, false, kLinePoints);
+    const double middle = (points_.x[a.last] + points_.x[b.first]) / 2;
+    const double variance = before.variance_at(middle) + after.variance_at(middle);
+    return std::abs(before.at(middle) - after.at(middle)) <
+           kGoesOn * noise_.point_mm * std::sqrt(noise_.apart() * variance) + pitch_;
+}
+
 // The two largest sheets with nothing as high as they are, and of their size, in between.
 GapSides::Found GapSides::two_cores(int least, double panel_mm, Core& before, Core& after) {
     const auto n = sheets_.size();
@@ -120,27 +129,6 @@ GapSides::Found GapSides::two_cores(int least, double panel_mm, Core& before, Co
         if (under(k)) deepest = std::min(deepest, height(k));
     const double ledge = (std::min(height(a), height(b)) + deepest) / 2;
     const auto is_ground = [&](std::size_t k) { return under(k) && height(k) <= ledge; };
-    // Over whatever divides them: what the two show beside it lies on one line.
-    const auto in_line = [&](std::size_t i, std::size_t j) {
-        const Sheet &one = sheets_[i], &other = sheets_[j];
-        const double middle = (points_.x[one.last] + points_.x[other.first]) / 2;
-        double off = 0, variance = 0;
-        for (const bool last : {true, false}) {
-            const Sheet& sheet = last ? one : other;
-            const int count = std::min(kLinePoints, sheet.last - sheet.first + 1);
-            const int from = last ? sheet.last - count + 1 : sheet.first;
-            double x = 0, z = 0, xx = 0, xz = 0;
-            for (int k = from; k < from + count; ++k) x += points_.x[k] / count, z += points_.z[k] / count;
-            for (int k = from; k < from + count; ++k) {
-                xx += (points_.x[k] - x) * (points_.x[k] - x);
-                xz += (points_.x[k] - x) * (points_.z[k] - z);
-            }
-            if (!(xx > 0)) return false;
-            off += (last ? 1 : -1) * (z + xz / xx * (middle - x));
-            variance += 1.0 / count + (middle - x) * (middle - x) / xx;
-        }
-        return std::abs(off) < kGoesOn * noise_.point_mm * std::sqrt(noise_.apart() * variance) + pitch_;
-    };
     std::size_t ground_from = n, ground_to = 0;
     for (std::size_t k = a + 1; k < b; ++k)
         if (is_ground(k)) ground_from = std::min(ground_from, k), ground_to = k;
@@ -155,17 +143,17 @@ GapSides::Found GapSides::two_cores(int least, double panel_mm, Core& before, Co
     const int few = std::max(kLeastGround, (least + 1) / 2);  // that lie on a panel's line
     for (std::size_t k = a + 1; k < b; ++k) {
         if (!as_high(k, few)) continue;
-        const bool on_left = in_line(left_end, k);
+        const bool on_left = in_line(sheets_[left_end], sheets_[k]);
         if (!on_left && (under(k) || !as_high(k, least))) continue;
-        if (ground_seen ? k > ground_from : !on_left || in_line(k, b)) break;
+        if (ground_seen ? k > ground_from : !on_left || in_line(sheets_[k], sheets_[b])) break;
         if (!on_left) left_first = k;
         left_end = k;
     }
     for (std::size_t k = b - 1; k > left_end; --k) {
         if (!as_high(k, few)) continue;
-        const bool on_right = in_line(k, right_begin);
+        const bool on_right = in_line(sheets_[k], sheets_[right_begin]);
         if (!on_right && (under(k) || !as_high(k, least))) continue;
-        if (ground_seen ? k < ground_to : !on_right || in_line(a, k)) break;
+        if (ground_seen ? k < ground_to : !on_right || in_line(sheets_[a], sheets_[k])) break;
         if (!on_right) right_last = k;
         right_begin = k;
     }
@@ -178,7 +166,7 @@ GapSides::Found GapSides::two_cores(int least, double panel_mm, Core& before, Co
         if (!lower(sheets_[k], sheets_[a]) || !lower(sheets_[k], sheets_[b])) continue;
         // Up to the panels, as far as it is the ground's line.
         const auto until = [&](int i, int step, int stop) {
-            const End end = end_of(sheets_[k], step > 0);
+            const End end = end_of(sheets_[k], step > 0, kEndPoints);
             while (i + step != stop && std::abs(z_[i + step] - end.z - end.slope * (x_[i + step] - end.x)) <
                                            kNoiseGate * noise_.point_mm)
                 i += step;

@@ -27,7 +27,7 @@ constexpr double kSteep = 2.1;          // slope: 65 degrees; no panel is seen s
 constexpr double kSteepSmoothed = 1.4;  // of a sensor that smooths, or may: a ramp is flatter than the step
 constexpr double kSteepNoise = 6;       // sigma
 constexpr int kMostSteep = 40;          // points over which steepness is judged
-constexpr int kEndPoints = 12, kFewEndPoints = 4;
+constexpr int kFewEndPoints = 4;
 constexpr double kSmooths = 1.5;                       // lines that share their noise
 constexpr double kRampStep = 0.5;                      // of the steepest: such a step belongs to the ramp
 constexpr double kByChance = 1e-3;                     // holes of missing returns in a profile
@@ -99,30 +99,34 @@ double GapSides::lost_share(const Core& before, const Core& after) const {
 }
 
 // Mean place and slope of the points at an end of a sheet.
-GapSides::End GapSides::end_of(const Sheet& sheet, bool last) const {
+GapSides::End GapSides::end_of(const Sheet& sheet, bool last, int most) const {
     End e;
-    const int count = std::min(kEndPoints, sheet.last - sheet.first + 1);
-    const int from = last ? sheet.last - count + 1 : sheet.first;
-    for (int i = from; i < from + count; ++i) e.x += points_.x[i] / count, e.z += points_.z[i] / count;
-    double xx = 0, xz = 0;
-    for (int i = from; i < from + count; ++i) {
-        xx += (points_.x[i] - e.x) * (points_.x[i] - e.x);
+    e.count = std::min(most, sheet.last - sheet.first + 1);
+    const int from = last ? sheet.last - e.count + 1 : sheet.first;
+    for (int i = from; i < from + e.count; ++i) e.x += points_.x[i] / e.count, e.z += points_.z[i] / e.count;
+    double xz = 0;
+    for (int i = from; i < from + e.count; ++i) {
+        e.spread += (points_.x[i] - e.x) * (points_.x[i] - e.x);
         xz += (points_.x[i] - e.x) * (points_.z[i] - e.z);
     }
-    e.slope = xx > 0 ? xz / xx : 0;
-    e.sigma = xx > 0 ? std::sqrt(1.0 / count + 1 / xx * std::pow(count * pitch_, 2)) : 1;
+    e.slope = e.spread > 0 ? xz / e.spread : 0;
     return e;
+}
+
+double GapSides::End::variance_at(double place) const {
+    return spread > 0 ? 1.0 / count + (place - x) * (place - x) / spread : 1;
 }
 
 // Either one lies where the other points to: nothing but noise or a few missing returns divides them.
 bool GapSides::goes_on(const Sheet& a, const Sheet& b) const {
     if (is_hole(a.last, b.first)) return false;
     const auto met = [&](const Sheet& end, const Sheet& begin) {
-        const End before = end_of(end, true), after = end_of(begin, false);
+        const End before = end_of(end, true, kEndPoints), after = end_of(begin, false, kEndPoints);
         const double dx = after.x - before.x, dz = after.z - before.z;
-        const double sigma =
-            noise_.point_mm * std::sqrt(noise_.apart()) * std::hypot(before.sigma, after.sigma);
-        const double most = kGoesOn * sigma + pitch_;
+        // Of the lines a length beside their middles.
+        const double variance = before.variance_at(before.x + before.count * pitch_) +
+                                after.variance_at(after.x - after.count * pitch_);
+        const double most = kGoesOn * noise_.point_mm * std::sqrt(noise_.apart() * variance) + pitch_;
         return std::abs(dz - before.slope * dx) < most && std::abs(dz - after.slope * dx) < most;
     };
     // A rim is bent over many points, and straight over the few that meet.
@@ -330,6 +334,38 @@ int GapSides::walked(int from, int step, int stop, double noise, GapPart& part) 
     return trail_.back();
 }
 
+// The raw point up to which a part is flat, from its edge inwards: what is half as steep as the steepest on the way to the
+// ground belongs to the step.
+int GapSides::flat_end(int edge, int to_gap, int inmost) const {
+    const auto slope = [&](int i, int j) { return std::abs((z_[j] - z_[i]) / (x_[j] - x_[i])); };
+    double steepest = 0;
+    for (int i = edge, k = 0; k < kMostSteep && i != (to_gap > 0 ? ground_first_ : ground_last_);
+         i += to_gap, ++k)
+        steepest = std::max(steepest, slope(i, i + to_gap));
+    const double least = std::max(kSteep, kRampStep * steepest);
+    while (edge != inmost && slope(edge - to_gap, edge) >= least) edge -= to_gap;
+    return edge;
+}
+
+// A sensor that means more lines than the likeness of its noise tells draws both steps to the ground over like many of them.
+void GapSides::take_drawn_steps(const Core& before, const Core& after, int& last, int& first) {
+    const auto lines = [&](int i, int j) { return std::abs(x_[j] - x_[i]) / pitch_; };
+    const int left = flat_end(last, 1, before.first), right = flat_end(first, -1, after.last);
+    const double drawn_left = lines(left, ground_first_), drawn_right = lines(right, ground_last_);
+    const double drawn = std::min(drawn_left, drawn_right);
+    if (missing(left, ground_first_) + missing(ground_last_, right) > 0 || drawn < kLeastDrawn ||
+        std::abs(drawn_left - drawn_right) > std::max(2.0, kDrawnAlike * drawn) ||
+        drawn <= kDrawnBeyond * noise_.apart())
+        return;
+    last = left;
+    first = right;
+    for (GapPart& part : parts_) {
+        part.ramp = true;
+        part.smoothed_lines = drawn;
+        part.unsure_lines = 0;
+    }
+}
+
 GapSides::Found GapSides::find(const Profile& profile, const FeatureWindow& window, int least,
                                double panel_mm) {
     points_.gather(profile, window);
@@ -379,46 +415,15 @@ GapSides::Found GapSides::find(const Profile& profile, const FeatureWindow& wind
         interleaved_ ? 0 : lost_share(before, {after_end, after.last});
     part_before.face = part_after.face = interleaved_;
     part_before.smoothed_lines = part_after.smoothed_lines = smooths() ? noise_.apart() : 1;
-    const int last = walked(before.last, 1, cut + 1, noise_before, part_before);
-    const int first = walked(after_end, -1, after_stop, noise_after, part_after);
+    int last = walked(before.last, 1, cut + 1, noise_before, part_before);
+    int first = walked(after_end, -1, after_stop, noise_after, part_after);
     const auto take = [&](GapPart& part, int i) {
         part.x.push_back(x_[i]);
         part.z.push_back(z_[i]);
     };
-    int edge_before = last, edge_after = first;
-    if (ground && !interleaved_) {
-        // A sensor that means more lines than likeness tells draws both steps over like many of them.
-        const auto lines = [&](int i, int j) { return std::abs(x_[j] - x_[i]) / pitch_; };
-        const auto flat_end = [&](int edge, int to_gap, int inmost) {
-            double steepest = 0;
-            for (int i = edge, k = 0;
-                 k < kMostSteep && i + to_gap > 0 && i != (to_gap > 0 ? ground_first_ : ground_last_);
-                 i += to_gap, ++k)
-                steepest = std::max(steepest, std::abs(z_[i + to_gap] - z_[i]) / lines(i, i + to_gap));
-            while (edge != inmost &&
-                   std::abs(z_[edge] - z_[edge - to_gap]) >=
-                       std::max(kSteep * pitch_, kRampStep * steepest) * lines(edge, edge - to_gap))
-                edge -= to_gap;
-            return edge;
-        };
-        const int left = flat_end(last, 1, before.first), right = flat_end(first, -1, after.last);
-        const double drawn_left = lines(left, ground_first_), drawn_right = lines(right, ground_last_);
-        const double drawn = std::min(drawn_left, drawn_right);
-        const bool whole = missing(left, ground_first_) + missing(ground_last_, right) == 0;
-        if (whole && drawn >= kLeastDrawn &&
-            std::abs(drawn_left - drawn_right) <= std::max(2.0, kDrawnAlike * drawn) &&
-            drawn > kDrawnBeyond * noise_.apart()) {
-            edge_before = left;
-            edge_after = right;
-            for (GapPart* part : {&part_before, &part_after}) {
-                part->ramp = true;
-                part->smoothed_lines = drawn;
-                part->unsure_lines = 0;
-            }
-        }
-    }
-    for (int i = edge_before; i >= before.first; --i) take(part_before, i);
-    for (int i = edge_after; i <= after.last; ++i) take(part_after, i);
+    if (ground && !interleaved_) take_drawn_steps(before, {after_end, after.last}, last, first);
+    for (int i = last; i >= before.first; --i) take(part_before, i);
+    for (int i = first; i <= after.last; ++i) take(part_after, i);
     return Found::both;
 }
 

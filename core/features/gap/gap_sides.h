@@ -74,9 +74,13 @@ class GapSides {
         int count;                    // of what the filter took of them
         int piece_first, piece_last;  // up to where the filter joins it with others
     };
+    // The line through the last points of a sheet: their mean, and slope.
     struct End {
         double x = 0, z = 0, slope = 0;
-        double sigma = 0;  // of the line a length beside its middle, in units of a point's
+        int count = 0;
+        double spread = 0;  // sum of (x - mean)^2, mm^2
+        double at(double place) const { return z + slope * (place - x); }
+        double variance_at(double place) const;  // in units of a point's
     };
     int missing(int i, int j) const;
     int lost(int a, int b) const;
@@ -84,7 +88,8 @@ class GapSides {
     bool interleaved() const;
     int chance_lines() const;
     double lost_share(const Core& before, const Core& after) const;
-    End end_of(const Sheet& sheet, bool last) const;
+    End end_of(const Sheet& sheet, bool last, int most) const;
+    bool in_line(const Sheet& a, const Sheet& b) const;
     bool goes_on(const Sheet& a, const Sheet& b) const;
     void divide();
     bool lower(const Sheet& b, const Sheet& a) const;
@@ -93,6 +98,8 @@ class GapSides {
     int break_between(const Core& before, const Core& after) const;
     double noise_of(int first, int last) const;
     int walked(int from, int step, int stop, double noise, GapPart& part) const;
+    int flat_end(int edge, int to_gap, int inmost) const;
+    void take_drawn_steps(const Core& before, const Core& after, int& last, int& first);
     bool smooths() const;
 
     FeaturePoints points_;

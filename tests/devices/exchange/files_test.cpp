@@ -38,6 +38,13 @@ TEST(WriteTextFile, ReplacesAFileAndLeavesNothingBeside) {
     EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
 }
 
+TEST(WriteTextFile, AnOptionIsNoName) {
+    const auto refused = write_text_file("--help", "x");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::input);
+    EXPECT_FALSE(fs::exists("--help"));
+}
+
 TEST(WriteTextFile, ALinkStaysAndItsFileIsReplacedAsAWhole) {
     TemporaryFolder folder;
     fs::create_directory(folder.path() / "far");

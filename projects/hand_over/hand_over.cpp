@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry/notation.h"
+#include "core/median.h"
 #include "projects/drift/drift_keeper.h"
 #include "projects/file/stored_text.h"
 #include "projects/hand_over/hand_over_detail.h"
@@ -197,10 +198,7 @@ double shared_mm(const FrozenContour& f, double TravelOffset::*axis) {
     std::vector<double> near;
     for (const TravelOffset& o : f.offsets)
         if (std::abs(o.travel_mm) <= f.jitter_mm) near.push_back(o.*axis);
-    if (near.empty()) return 0;
-    const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
-    std::nth_element(near.begin(), middle, near.end());
-    return *middle;
+    return near.empty() ? 0 : median(near);
 }
 
 std::string frozen_plot(const HandOverWriter& w, const std::string& spot_id, const FrozenContour& f) {

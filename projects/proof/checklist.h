@@ -83,16 +83,11 @@ std::optional<CheckItem> frozen_open(const Project& project, const Facts& facts,
 // Whether a pass judged by it says less than the project requires.
 bool widened_tolerance(const Project& project, double tolerance_mm);
 
-// The newest evidence of a kind; of a spot for FrozenContour. nullptr when there is none.
+// The newest evidence of a kind; nullptr when there is none. A spot's pass: newest_pass (present_names.h).
 template <class T>
-const Evidence* newest(const Facts& facts, const std::string& spot_id = {}) {
-    for (auto e = facts.evidence.rbegin(); e != facts.evidence.rend(); ++e) {
-        const T* what = std::get_if<T>(&e->what);
-        if (!what) continue;
-        if constexpr (std::is_same_v<T, FrozenContour>)
-            if (what->spot_id != spot_id) continue;
-        return &*e;
-    }
+const Evidence* newest(const Facts& facts) {
+    for (auto e = facts.evidence.rbegin(); e != facts.evidence.rend(); ++e)
+        if (std::holds_alternative<T>(e->what)) return &*e;
     return nullptr;
 }
 

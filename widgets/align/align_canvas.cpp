@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/median.h"
 #include "widgets/align/align_view.h"
 #include "widgets/style.h"
 
@@ -32,10 +33,7 @@ double constant_of(const AlignmentResult& result, int row, const Eigen::Vector3d
             offset.travel_mm <= result.curve.valid_to_mm)
             left.push_back(v - at_travel(coefficients, offset.travel_mm));
     }
-    if (left.empty()) return 0;
-    const auto middle = left.begin() + static_cast<std::ptrdiff_t>(left.size() / 2);
-    std::nth_element(left.begin(), middle, left.end());
-    return *middle;
+    return left.empty() ? 0 : median(left);
 }
 
 // Level, in the corner: a low plot has no room for it along the axis.

@@ -10,6 +10,7 @@
 #include <QSpinBox>
 #include <QTreeWidget>
 
+#include "projects/proof/present_names.h"
 #include "tests/app/studio/furniture.h"
 #include "tests/app/studio/person.h"
 #include "widgets/pages/regions_page.h"
@@ -250,7 +251,7 @@ TEST_F(AtTheDesk, ARecordedPassIsAcceptedNext) {
         EXPECT_EQ(me.find<QPushButton>("head_deed")->text(), "Accept");
         me.click("head_deed");
         QTest::qWait(100);
-        EXPECT_TRUE(newest<FrozenContour>(desk().facts(), spot.id));
+        EXPECT_TRUE(newest_pass(project(), desk().facts(), spot.id));
         EXPECT_TRUE(row(spot.id).endsWith("pass accepted")) << row(spot.id).toStdString();
         EXPECT_NE(me.find<QPushButton>("head_deed")->text(), "Accept");
         return;

@@ -63,7 +63,7 @@ class Desk : public QObject {
     const std::optional<Person>& person() const { return person_; }
     Expected<void> sign_in(const std::string& name, const std::string& password);
     void sign_out(const Text& why = "signed out");
-    // What is refused is said before work is lost; what counts is refused by the file.
+    // What is refused is said before work is lost; what counts is refused by the file. Without a project: nothing.
     Expected<void> may(Deed deed) const;
 
     // --- edits; an Error changes nothing, and so does an edit that is none
@@ -133,6 +133,7 @@ class Desk : public QObject {
     void note(EventKind kind, const std::string& subject, const Text& text);
 
   signals:
+    void loading();          // another project is about to be opened(), not this one under another name
     void opened();           // another project, or none
     void person_changed();   // signed in, signed out
     void project_changed();  // by edit, undo, redo, restore

@@ -57,6 +57,7 @@ Expected<void> Desk::create(const std::filesystem::path& path, const Project& pr
     discard_recovery(path);
     drop_kept();
     recovery_.reset();
+    emit loading();
     take_over(std::move(file), project);
     use_ = std::move(use);
     return {};
@@ -89,6 +90,7 @@ Expected<void> Desk::open(const std::filesystem::path& path) {
                   "this session, which are not kept against a crash: %2")
                    .arg(shown(found.error().what), shown_error(aside.error()));
     }
+    emit loading();
     take_over(std::move(file), std::move(project));
     if (use) use_ = std::move(*use);
     if (!told.isEmpty()) {

@@ -278,6 +278,7 @@ void SceneView::set_part_ply(const std::vector<std::byte>& ply) {
         Surface surface = part_surface(mesh);
         return std::pair(std::move(mesh), std::move(surface));
     };
+    impl_->part_is_read = true;
     impl_->reading.run(read, [this](Expected<std::pair<SceneMesh, Surface>> part) {
         const bool readable = part.has_value();
         if (!readable) part.emplace(SceneMesh(), part_surface({}));  // the one before is not this one's
@@ -298,11 +299,22 @@ bool SceneView::has_part() const {
 void SceneView::Impl::take_part(SceneMesh part, const vtkSmartPointer<vtkPolyData>& drawn) {
     mesh = std::move(part);
     surface = drawn;
+    part_is_read = false;
     redraw(Layer::part);
-    if (first_fit && !mesh.points.empty()) {
-        first_fit = false;
-        view.show_view(View::iso);
-    }
+    fit_once();
+}
+
+void SceneView::Impl::fit_once() {
+    if (part_is_read) return;  // what stands there is the one before
+    const bool part = !mesh.points.empty();
+    if (part ? !part_to_fit : !spots_to_fit || spots.empty()) return;
+    if (part) part_to_fit = false;
+    spots_to_fit = false;
+    view.show_view(View::iso);
+}
+
+void SceneView::expect_another() {
+    impl_->part_to_fit = impl_->spots_to_fit = true;
 }
 
 void SceneView::set_part_shift(const Pose& workobject_from_part) {
@@ -318,13 +330,12 @@ void SceneView::set_part_shift(const Pose& workobject_from_part) {
 }
 
 void SceneView::set_spots(const std::vector<SceneSpot>& spots) {
-    if (same(impl_->spots, spots)) return;
-    const bool appear = impl_->spots.empty() && !spots.empty();
-    impl_->spots = spots;
-    for (const Layer layer : {Layer::spots, Layer::sensors, Layer::regions, Layer::corrections})
-        impl_->redraw(layer);
-    // Where no mesh is to come the spots are all there is to look at.
-    if (appear && impl_->mesh.points.empty()) show_view(View::iso);
+    if (!same(impl_->spots, spots)) {
+        impl_->spots = spots;
+        for (const Layer layer : {Layer::spots, Layer::sensors, Layer::regions, Layer::corrections})
+            impl_->redraw(layer);
+    }
+    impl_->fit_once();
 }
 
 void SceneView::set_regions(const std::vector<SceneRegion>& regions) {

@@ -81,7 +81,10 @@ class SceneView : public QWidget {
     // Binary or ASCII PLY, millimetres, as in PartSetup::mesh_ply; empty bytes remove the part. Read beside the window:
     // part_read() says when it is shown, or that it is no PLY and nothing is.
     void set_part_ply(const std::vector<std::byte>& ply);
-    void set_part(const SceneMesh& mesh);                   // at once
+    void set_part(const SceneMesh& mesh);  // at once
+    // What is set next is another project's: as soon as its part is there, or its spots where it has none, the picture is
+    // fitted to it, once. So it is with the first one.
+    void expect_another();
     bool has_part() const;                                  // it is shown
     void set_part_shift(const Pose& workobject_from_part);  // displaced part; identity at teaching
     void set_spots(const std::vector<SceneSpot>& spots);

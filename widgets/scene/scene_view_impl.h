@@ -58,8 +58,9 @@ struct SceneView::Impl {
     Pose part_shift = Pose::Identity();
     std::string spot, region;
     double scale = 20;
-    bool first_fit = true;
-    Aside reading;  // last: its end waits
+    bool part_to_fit = true, spots_to_fit = true;  // when they come
+    bool part_is_read = false;                     // beside the window, at the moment
+    Aside reading;                                 // last: its end waits
 
     explicit Impl(SceneView& owner) : view(owner) {}
     LayerManager* manager(Layer layer) {
@@ -72,6 +73,7 @@ struct SceneView::Impl {
     void redraw(Layer layer);
     void redraw_all();
     void take_part(SceneMesh part, const vtkSmartPointer<vtkPolyData>& drawn);
+    void fit_once();
     SceneLabels words() const;
     void paint_words(QPainter& painter) const { words().paint(painter, *canvas); }
     const SceneEdge* edge_at(const QPointF& at) const;

@@ -33,6 +33,7 @@ ViewFeeder::ViewFeeder(Desk& desk, Views views, QObject* parent)
         project();
         selected();
     });
+    connect(&desk_, &Desk::loading, views_.scene, &SceneView::expect_another);
     connect(&desk_, &Desk::opened, this, [this] {
         shifts_.clear();
         views_.align->clear();

@@ -219,6 +219,13 @@ void check_spot(const Project& project, const Spot& spot, Findings& findings) {
     findings.unless(used || !spot.enabled, where, "no region uses it", "add it to a region or switch it off");
 }
 
+// One part is of one type.
+Expected<void> not_both_write(const Region& other, const Region& region) {
+    if (other.type_id != region.type_id || !same_frame(other.frame_name, region.frame_name)) return {};
+    return input_error(Text("region {} writes the same frame {}", other.id, other.frame_name),
+                       Text("region {}", region.id), "give each region its own frame");
+}
+
 void check_region(const Project& project, const Region& region, Findings& findings) {
     const Text where("region {}", region.id);
     std::set<std::string> seen;
@@ -257,10 +264,7 @@ void check_region(const Project& project, const Region& region, Findings& findin
     findings.rigid(region.base_from_frame, joined(where, "", ".base_from_frame"));
     for (const Region& other : project.regions) {
         if (&other == &region) break;
-        if (other.type_id != region.type_id) continue;  // one part is of one type
-        findings.unless(!same_frame(other.frame_name, region.frame_name), where,
-                        Text("region {} writes the same frame {}", other.id, other.frame_name),
-                        "give each region its own frame");
+        if (auto own = not_both_write(other, region); !own) findings.add(own.error());
     }
     findings.concern(Concern::setup);
 }
@@ -339,6 +343,16 @@ std::vector<Error> of_motion(Findings&& findings, bool push, bool passes = true)
 }
 
 }  // namespace
+
+Expected<void> frame_of_its_own(const Project& project, const Region& region) {
+    for (const Region& other : project.regions)
+        if (other.id != region.id) SEAM_OK(not_both_write(other, region));
+    for (const PanelJob& job : project.panel_jobs)
+        if (same_frame(job.frame_name, region.frame_name))
+            return input_error(Text("panel job {} writes the same frame {}", job.id, job.frame_name),
+                               Text("region {}", region.id), "give each region its own frame");
+    return {};
+}
 
 std::vector<Error> motion_findings(const Project& project, bool push) {
     Findings findings;

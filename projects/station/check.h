@@ -10,6 +10,9 @@ namespace seamwright {
 
 // Empty when plausible; else one Error per finding (unknown ids, duplicates, spots without region, ...).
 std::vector<Error> check(const Project& project);
+// Error (input) where another region, of the same type, or a panel job writes the frame that this region names, which no
+// controller tells from another spelling of its letters (same_frame()). `region` may be one that the project is to get.
+Expected<void> frame_of_its_own(const Project& project, const Region& region);
 // Those of them that concern how the robot moves: while it measures the enabled spots, and with `push` in the
 // frames of the regions. No run begins while there is one. The second: of a panel job.
 std::vector<Error> motion_findings(const Project& project, bool push);

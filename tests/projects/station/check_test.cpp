@@ -90,6 +90,28 @@ TEST(Check, NamesEveryImplausibility) {
     }
 }
 
+TEST(Check, AFrameIsItsOwnWhereNobodyElseWritesIt) {
+    Project project = make_fake_cell()->project;
+    ASSERT_GE(project.regions.size(), 2u);
+    for (const Region& region : project.regions) EXPECT_TRUE(frame_of_its_own(project, region));
+    Region fresh = project.regions[0];
+    fresh.id = "fresh";
+    const auto refused = frame_of_its_own(project, fresh);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().sentence(), "region fresh: region " + project.regions[0].id +
+                                              " writes the same frame " + project.regions[0].frame_name +
+                                              "; give each region its own frame");
+    for (char& c : fresh.frame_name) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    EXPECT_FALSE(frame_of_its_own(project, fresh));
+    fresh.type_id = "another";
+    EXPECT_TRUE(frame_of_its_own(project, fresh)) << "one part is of one type";
+    fresh.frame_name += "_2";
+    fresh.type_id.clear();
+    EXPECT_TRUE(frame_of_its_own(project, fresh));
+    project.panel_jobs.emplace_back().frame_name = fresh.frame_name;
+    EXPECT_FALSE(frame_of_its_own(project, fresh));
+}
+
 TEST(Check, ASpotOfTheDriftWatchNeedsNoRegion) {
     Project project = make_fake_cell()->project;
     const std::size_t before = check(project).size();

@@ -5,15 +5,19 @@
 #include <QComboBox>
 #include <QContextMenuEvent>
 #include <QHeaderView>
+#include <QLabel>
 #include <QLineEdit>
 #include <QMenu>
 #include <QSignalSpy>
 #include <QTableWidget>
 #include <QTest>
 
+#include "widgets/editors/leave_field.h"
 #include "widgets/editors/list_habits.h"
+#include "widgets/editors/name_editor.h"
 #include "widgets/editors/number_box.h"
 #include "widgets/editors/parameter_editor.h"
+#include "widgets/editors/plain_words.h"
 #include "widgets/editors/pose_editor.h"
 #include "widgets/editors/settings_editor.h"
 
@@ -90,6 +94,62 @@ TEST(ParameterEditor, CommitsRefusesAndGoesBack) {
     editor.set_value(1.23456);
     QTest::keyClick(line, Qt::Key_Return);
     EXPECT_DOUBLE_EQ(editor.value(), 1.23456);
+}
+
+TEST(NameEditor, WhatIsRefusedStaysUntilItIsMendedOrTakenBack) {
+    std::string taken;
+    NameEditor editor("Name", "tip", [&](const std::string& name) -> Expected<void> {
+        if (name == "b") return input_error("it is another's", Text("name {}", name), "choose another");
+        taken = name;
+        return {};
+    });
+    editor.refresh("a", "one");
+    editor.show();
+    QApplication::setActiveWindow(&editor);
+    QLineEdit& line = editor.line();
+    const auto type = [&](const QString& text) {
+        line.setFocus();
+        line.selectAll();
+        QTest::keyClicks(&line, text);
+    };
+    const auto said = [&] { return editor.findChild<QLabel*>()->text(); };
+    type("b");
+    EXPECT_FALSE(leave_field(editor)) << "without a Return";
+    EXPECT_TRUE(editor.refused());
+    EXPECT_EQ(said(), "refused: name b: it is another's; choose another");
+    EXPECT_TRUE(line.hasFocus()) << "where it is mended";
+    EXPECT_EQ(taken, "");
+    editor.refresh("a", "one");
+    EXPECT_EQ(line.text(), "b");
+    type(" c ");
+    EXPECT_TRUE(leave_field(editor));
+    EXPECT_FALSE(editor.refused());
+    EXPECT_EQ(taken, "c");
+    EXPECT_EQ(line.text(), "c");
+    type("b");
+    QTest::keyClick(&line, Qt::Key_Return);
+    ASSERT_TRUE(editor.refused());
+    QTest::keyClick(&line, Qt::Key_Escape);
+    EXPECT_FALSE(editor.refused());
+    EXPECT_EQ(line.text(), "c");
+    type("b");
+    QTest::keyClick(&line, Qt::Key_Return);
+    editor.refresh("d", "another one");
+    EXPECT_FALSE(editor.refused());
+    EXPECT_EQ(line.text(), "d");
+}
+
+TEST(PlainWords, NoNameIsMarkup) {
+    PlainWords words;
+    qApp->installEventFilter(&words);
+    const QString name = "<b>x</b> & <img src='y.png'>";
+    QLabel plain(name), rich("<b>bold</b>");
+    rich.setTextFormat(Qt::RichText);
+    for (QLabel* label : {&plain, &rich}) label->show();
+    EXPECT_EQ(plain.textFormat(), Qt::PlainText);
+    EXPECT_EQ(plain.text(), name);
+    EXPECT_GE(plain.sizeHint().width(), plain.fontMetrics().horizontalAdvance(name)) << "all its signs";
+    EXPECT_EQ(rich.textFormat(), Qt::RichText);
 }
 
 TEST(PoseText, EveryNotationComesBack) {
@@ -211,6 +271,16 @@ TEST_F(SettingsForm, RefusesAndKeepsTheLastGoodOne) {
     }
     editor.set_value({{"port", 7000}});
     EXPECT_FALSE(editor.refused());
+}
+
+TEST_F(SettingsForm, EscapeBringsBackWhatIsWritten) {
+    editor.set_value({{"port", 5000}});
+    type("setting_port", "x");
+    ASSERT_TRUE(editor.refused());
+    QTest::keyClick(line("setting_port"), Qt::Key_Escape);
+    EXPECT_FALSE(editor.refused());
+    EXPECT_EQ(line("setting_port")->text(), "5000");
+    EXPECT_EQ(editor.value(), nlohmann::json({{"port", 5000}}));
 }
 
 TEST_F(SettingsForm, ShowsWhatCounts) {

@@ -4,6 +4,7 @@
 #include <QComboBox>
 #include <QEvent>
 #include <QHBoxLayout>
+#include <QKeyEvent>
 #include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
@@ -15,6 +16,7 @@
 #include "devices/exchange/json_fields.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
+#include "widgets/into_view.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
@@ -209,6 +211,12 @@ bool SettingsEditor::refused() const {
                        [](const auto& row) { return !row->reason.isEmpty(); });
 }
 
+void SettingsEditor::show_refused() {
+    const auto row =
+        std::ranges::find_if(impl_->rows, [](const auto& one) { return !one->reason.isEmpty(); });
+    if (row != impl_->rows.end()) bring_into_view((*row)->problem);
+}
+
 void SettingsEditor::show_all(bool all) {
     impl_->all->setChecked(all);
 }
@@ -355,6 +363,15 @@ bool SettingsEditor::eventFilter(QObject* watched, QEvent* event) {
     auto* widget = qobject_cast<QWidget*>(watched);
     if (event->type() == QEvent::FocusIn && widget)
         impl_->help->setText(widget->accessibleName() + ": " + widget->accessibleDescription());
+    // What holds comes back; where it stands there already, the key is for the page.
+    if (event->type() == QEvent::KeyPress && static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape)
+        for (const auto& row : impl_->rows)
+            if (row->text && row->text == watched && (row->text->isModified() || !row->reason.isEmpty())) {
+                impl_->show_value(*row);
+                impl_->show_rows(row.get());
+                emit edited();
+                return true;
+            }
     return QWidget::eventFilter(watched, event);
 }
 

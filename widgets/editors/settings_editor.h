@@ -4,8 +4,8 @@
 // table's first few are shown, the others on demand.
 //
 // What a person changes is written into the JSON at once; an empty field takes the setting out again. What is no
-// number, out of range or no JSON stays in the field, marked by the word "refused" and the reason, and is not written.
-// Settings that the table does not hold stay in the JSON untouched.
+// number, out of range or no JSON stays in the field, marked by the word "refused" and the reason, and is not written;
+// Escape brings back what is. Settings that the table does not hold stay in the JSON untouched.
 
 #include <QWidget>
 #include <memory>
@@ -25,6 +25,7 @@ class SettingsEditor : public QWidget {
     void set_value(const nlohmann::json& settings);  // no signal
     const nlohmann::json& value() const;
     bool refused() const;  // of any field
+    void show_refused();   // scrolls to the first of them
     void show_all(bool all);
 
   signals:

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "projects/model/project.h"
+#include "widgets/menu_signs.h"
 
 namespace seamwright {
 
@@ -18,6 +19,8 @@ class DeskCommand : public QUndoCommand {
     Q_DECLARE_TR_FUNCTIONS(DeskCommand)
   public:
     explicit DeskCommand(Editor editor) : editor_(std::move(editor)) {}
+    // Menus show it, which take the sign & of a name for a key.
+    void setText(const QString& text) { QUndoCommand::setText(with_signs(text)); }
     void redo() final {
         editor_([this](Project& p) { apply(p); });
     }

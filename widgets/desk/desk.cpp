@@ -136,7 +136,7 @@ void Desk::sign_out(const Text& why) {
 }
 
 Expected<void> Desk::may(Deed deed) const {
-    if (!file_) return {};
+    if (!file_) return usage_error("no project is open", {}, "open or make one");
     return file_->may(deed);
 }
 

@@ -10,6 +10,7 @@
 #include "projects/file/project_json.h"
 #include "projects/measure/fields.h"
 #include "projects/measure/measure.h"
+#include "projects/station/check.h"
 #include "widgets/desk/desk.h"
 
 namespace seamwright {
@@ -71,6 +72,17 @@ Expected<void> valid<RobotSetup>(const Project&, const RobotSetup& robot) {
     return {};
 }
 
+// Of what is named newly: a project that came with it is told by check(), and its other edits are free.
+template <class T>
+Expected<void> frame_is_free(const Project&, const T&, const T* = nullptr) {
+    return {};
+}
+template <>
+Expected<void> frame_is_free<Region>(const Project& project, const Region& region, const Region* before) {
+    if (before && before->frame_name == region.frame_name) return {};
+    return frame_of_its_own(project, region);
+}
+
 // Why a thing may not go.
 template <class T>
 Expected<void> removable(const Project& project, const std::string& id) {
@@ -119,6 +131,7 @@ Expected<void> Desk::add(T thing, int at) {
     if (index_of<T>(project_, thing.id) >= 0)
         return input_error(Text("the name \"{}\" is used already", thing.id), {}, "choose another");
     SEAM_OK(valid<T>(project_, thing));
+    SEAM_OK(frame_is_free<T>(project_, thing));
     const std::size_t size = list_of<T>(project_).size();
     const std::size_t where = at < 0 ? size : std::min(size, static_cast<std::size_t>(at));
     push(std::make_unique<CmdAdd<T>>(editor(), std::move(thing), where));
@@ -175,6 +188,7 @@ Expected<void> Desk::edit(const T& after, const QString& what) {
     const T& before = list_of<T>(project_)[static_cast<std::size_t>(at)];
     if (to_json_document(before) == to_json_document(after)) return {};
     SEAM_OK(valid<T>(project_, after));
+    SEAM_OK(frame_is_free<T>(project_, after, &before));
     push(std::make_unique<CmdEdit<T>>(editor(), before, after, static_cast<std::size_t>(at), what));
     return {};
 }
@@ -277,6 +291,7 @@ Expected<void> Desk::edit_part(const PartSetup& after, const QString& text) {
 
 void Desk::import_part(const std::filesystem::path& path, const std::string& unit,
                        std::function<void(const Expected<void>&)> told) {
+    if (const auto allowed = may(Deed::teach); !allowed) return told(allowed);
     const auto read = [path, unit]() -> Expected<std::vector<std::byte>> {
         SEAM_TRY(const auto mesh, load_mesh(path, unit));
         return ply_bytes(mesh);

@@ -75,7 +75,9 @@ std::vector<Edit> edits() {
         {"SpotEnable", "Enable spot S6", [](Desk& d) { return d.set_spot_enabled("S6", true); }},
         {"SpotDisable", "Disable spot S1", [](Desk& d) { return d.set_spot_enabled("S1", false); }},
         {"RegionAdd", "Add region N",
-         [=](Desk& d) { return d.add(with(d.project().regions[0], [](Region& r) { r.id = "N"; }), 0); }},
+         [=](Desk& d) {
+             return d.add(with(d.project().regions[0], [](Region& r) { r.id = r.frame_name = "N"; }), 0);
+         }},
         {"RegionRemove", "Remove region edge", [](Desk& d) { return d.remove<Region>("edge"); }},
         {"RegionRename", "Rename region edge to rim",
          [](Desk& d) { return d.rename<Region>("edge", "rim"); }},
@@ -396,6 +398,69 @@ TEST(DeskEdits, NobodySignedInChangesNothing) {
     ASSERT_TRUE(desk.sign_in("ada", "correct horse battery"));
     EXPECT_TRUE(desk.set_spot_enabled(spot.id, !spot.enabled));
     EXPECT_TRUE(desk.edit(region));
+}
+
+TEST(DeskEdits, WithoutAProjectNothingIsEdited) {
+    Desk desk;
+    const auto refuses = [&](const auto& result, const char* what) {
+        ASSERT_FALSE(result) << what;
+        EXPECT_EQ(result.error().sentence(), "no project is open; open or make one") << what;
+    };
+    const Project full = full_project();
+    refuses(desk.add(full.sensors[0]), "a sensor");
+    refuses(desk.add(full.robots[0]), "a robot");
+    refuses(desk.add(full.regions[0]), "a region");
+    refuses(desk.edit_part(full.part, "x"), "the part");
+    refuses(desk.rename_project("x"), "its name");
+    refuses(desk.set_requirement("sigma3_mm", 0.3), "a requirement");
+    refuses(desk.edit_acceptance({}), "the acceptance");
+    refuses(desk.edit_project([](Project& p) { p.name = "x"; }, "x"), "anything");
+    refuses(desk.reteach(Exchange{}), "taking up again");
+    bool told = false;
+    desk.import_part("none.stl", "mm", [&](const Expected<void>& imported) {
+        told = true;
+        refuses(imported, "a mesh");
+    });
+    EXPECT_TRUE(told) << "before it is read";
+    EXPECT_EQ(desk.undo_stack().count(), 0);
+    EXPECT_FALSE(desk.modified());
+}
+
+// One that comes with a project is told by check(); it keeps nobody from the other edits.
+TEST_F(Commands, AFrameOfAnotherRegionOrPanelIsNotNamedNewly) {
+    const Project p = desk.project();
+    ASSERT_EQ(p.regions[0].frame_name, p.regions[1].frame_name);
+    ASSERT_FALSE(p.panel_jobs.empty());
+    EXPECT_TRUE(desk.set_region_field(RegionId("hinge"), "sigma_limit_mm", 0.21));
+    Region own = desk.project().regions[1];
+    own.frame_name = "BASE_OWN";
+    EXPECT_TRUE(desk.edit(own));
+    const auto refused = [&](const std::string& frame, const std::string& why) {
+        Region r = own;
+        r.frame_name = frame;
+        const auto edited = desk.edit(r);
+        ASSERT_FALSE(edited) << frame;
+        EXPECT_EQ(edited.error().sentence(), why);
+        r.id = "new";
+        const auto added = desk.add(r);
+        ASSERT_FALSE(added) << frame;
+        EXPECT_THAT(added.error().sentence(), HasSubstr("writes the same frame"));
+    };
+    refused("base_data[7]",
+            "region hinge: region edge writes the same frame BASE_DATA[7]; give each region its own frame");
+    refused("BASE_data[9]", "region hinge: panel job " + p.panel_jobs[0].id +
+                                " writes the same frame BASE_DATA[9]; give each region its own frame");
+    EXPECT_EQ(desk.project().regions[1].frame_name, "BASE_OWN");
+    // Two types push the same frame, one at a time.
+    ASSERT_TRUE(desk.edit_project(
+        [](Project& all) {
+            all.regions[0].type_id = "left";
+            all.regions[1].type_id = "right";
+        },
+        "types"));
+    Region shared = desk.project().regions[1];
+    shared.frame_name = "BASE_DATA[7]";
+    EXPECT_TRUE(desk.edit(shared));
 }
 
 TEST(DeskEdits, ANameIsCountedInSigns) {

@@ -5,6 +5,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "widgets/menu_signs.h"
 #include "widgets/style.h"
 
 namespace seamwright {
@@ -66,14 +67,14 @@ bool CommandPalette::eventFilter(QObject* watched, QEvent* event) {
 void CommandPalette::fill(const QString& typed) {
     std::vector<std::pair<int, QAction*>> hits;
     for (QAction* action : actions_) {
-        const int score = fuzzy_score(typed, action->text().remove('&'));
+        const int score = fuzzy_score(typed, without_marks(action->text()));
         if (score >= 0) hits.emplace_back(score, action);
     }
     std::stable_sort(hits.begin(), hits.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
     list_->clear();
     for (const auto& [score, action] : hits) {
-        QString text = action->text().remove('&');
+        QString text = without_marks(action->text());
         if (!action->shortcut().isEmpty())
             text += QStringLiteral("    ") + action->shortcut().toString(QKeySequence::NativeText);
         auto* item = new QListWidgetItem(action->icon(), text, list_);

@@ -113,6 +113,7 @@ MainWindow::MainWindow(Studio& studio) : studio_(studio), desk_(studio.desk()) {
     connect(&desk_, &Desk::modified_changed, this, &MainWindow::refresh_title);
     connect(&desk_, &Desk::opened, this, [this] {
         refresh_title();
+        let_act();
         trouble_->hide();
     });
     connect(&desk_, &Desk::person_changed, this, &MainWindow::refresh_person);
@@ -162,6 +163,7 @@ MainWindow::MainWindow(Studio& studio) : studio_(studio), desk_(studio.desk()) {
     if (s.contains("geometry")) restoreGeometry(s.value("geometry").toByteArray());
     if (s.contains("layout")) restoreState(s.value("layout").toByteArray(), kLayoutVersion);
     refresh_title();
+    let_act();
     refresh_next();
     refresh_status();
     refresh_person();
@@ -237,6 +239,7 @@ void MainWindow::make_central() {
     rail_ = new StepRail(desk_);
     columns->addWidget(rail_);
     pages_ = new QStackedWidget;
+    pages_->setObjectName("pages");
     pages_->setMinimumWidth(kPageWidth);
     run_page_ = new RunPage(desk_, views_);
     auto* prove = new ProvePage(desk_, views_);
@@ -311,6 +314,7 @@ void MainWindow::show_step(Step step) {
 }
 
 void MainWindow::go_on() {
+    if (!desk_.is_open()) return open_project();
     lead_to(run_page_->asks() ? Step::run : next_step(desk_.steps()));
 }
 
@@ -400,7 +404,6 @@ bool MainWindow::focusNextPrevChild(bool next) {
 }
 
 void MainWindow::show_dialog(const QString& name, const std::function<QDialog*()>& make) {
-    if (!desk_.is_open()) return tell(tr("No project is open."));
     auto* dialog = findChild<QDialog*>(name);
     if (!dialog) {
         dialog = make();

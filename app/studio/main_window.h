@@ -51,6 +51,7 @@ class MainWindow : public QMainWindow {
     QAction* action(const QString& name, const QString& icon_name, const QString& text,
                     const QKeySequence& keys, const std::function<void()>& run);
     void make_actions();  // main_window_actions.cpp
+    void let_act();       // what needs a project, where there is one
     void make_file_menu();
     void make_edit_menu();
     void make_steps_menu();

@@ -16,11 +16,33 @@
 #include "widgets/dialogs/place_dialog.h"
 #include "widgets/dialogs/program_dialog.h"
 #include "widgets/dialogs/record_dialog.h"
+#include "widgets/menu_signs.h"
 #include "widgets/pages/run_page.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
 
 namespace seamwright {
+namespace {
+
+// What there is to do only where a project is open.
+constexpr const char* kOfProject[] = {"save",
+                                      "save_as",
+                                      "export_json",
+                                      "report",
+                                      "corrected_path",
+                                      "spots_from_drawing",
+                                      "robot_program",
+                                      "mirror",
+                                      "reteach",
+                                      "connect_all",
+                                      "disconnect_all",
+                                      "measure_now",
+                                      "measure_and_push",
+                                      "gap_check",
+                                      "panel_fit_dialog",
+                                      "record_session"};
+
+}  // namespace
 
 QAction* MainWindow::action(const QString& name, const QString& icon_name, const QString& text,
                             const QKeySequence& keys, const std::function<void()>& run) {
@@ -28,14 +50,17 @@ QAction* MainWindow::action(const QString& name, const QString& icon_name, const
     a->setObjectName(name);
     if (!icon_name.isEmpty()) a->setIcon(icon(icon_name, palette()));
     if (!keys.isEmpty()) a->setShortcut(keys);
-    QString plain = text;
-    plain.remove('&');
+    const QString plain = without_marks(text);
     a->setToolTip(keys.isEmpty()
                       ? plain
                       : plain + QStringLiteral("  (") + keys.toString(QKeySequence::NativeText) + ")");
     connect(a, &QAction::triggered, this, run);
     addAction(a);
     return a;
+}
+
+void MainWindow::let_act() {
+    for (const char* name : kOfProject) findChild<QAction*>(name)->setEnabled(desk_.is_open());
 }
 
 void MainWindow::make_actions() {
@@ -57,7 +82,7 @@ void MainWindow::make_file_menu() {
     connect(recent_, &QMenu::aboutToShow, this, [this] {
         recent_->clear();
         for (const QString& path : studio_.recent())
-            recent_->addAction(path, this, [this, path] {
+            recent_->addAction(with_signs(path), this, [this, path] {
                 if (may_leave()) studio_.open(path);
             });
     });
@@ -152,8 +177,9 @@ void MainWindow::make_steps_menu() {
 
 void MainWindow::make_measure_menu() {
     auto* run = menuBar()->addMenu(tr("&Measure"));
-    run->addAction(action("connect_all", "plug", tr("Connect devices"), QKeySequence("F4"),
-                          [this] { desk_.worker().connect_devices(); }));
+    run->addAction(action("connect_all", "plug", tr("Connect devices"), QKeySequence("F4"), [this] {
+        if (take_typed()) desk_.worker().connect_devices();
+    }));
     run->addAction(action("disconnect_all", "unplug", tr("Disconnect devices"), QKeySequence("Shift+F4"),
                           [this] { desk_.worker().disconnect_devices(); }));
     run->addAction(action("measure_now", "measure", tr("Measure"), QKeySequence("F5"), [this] {
@@ -211,7 +237,7 @@ void MainWindow::make_view_menu() {
             tell(tr("A job is running: end it first, the window is built anew for this."));
             trouble_->setProperty("until_idle", true);
         }
-        return !busy;
+        return !busy && take_typed();
     };
     QAction* language =
         action("language", "language", tr("Deutsch"), QKeySequence("Ctrl+L"), [this, may_build] {

@@ -15,8 +15,7 @@
 #include "devices/exchange/json_fields.h"
 #include "projects/hand_over/hand_over.h"
 #include "projects/reuse/exchange.h"
-#include "widgets/editors/parameter_editor.h"
-#include "widgets/editors/pose_editor.h"
+#include "widgets/editors/leave_field.h"
 #include "widgets/pages/run_page.h"
 #include "widgets/print/pdf.h"
 #include "widgets/shown_text.h"
@@ -58,20 +57,20 @@ bool MainWindow::may_cancel() {
     return box.clickedButton() == cancel;
 }
 
-// What is typed into a field counts before the project is saved or left. False: it is refused there, and stays.
+// What is typed counts before the project is saved, left or connected. False: it is refused where it stands, and stays.
 bool MainWindow::take_typed() {
-    const QPointer<QWidget> field = QApplication::focusWidget();
-    if (!field || field->window() != this) return true;
-    field->clearFocus();
-    bool refused = false;
-    for (QWidget* up = field; up && !refused; up = up->parentWidget()) {
-        const auto* number = qobject_cast<ParameterEditor*>(up);
-        const auto* pose = qobject_cast<PoseEditor*>(up);
-        refused = (number && number->refused()) || (pose && pose->refused());
+    if (!leave_field(*this)) {
+        tell(tr("A value is refused: mend it, or press Esc in its field."));
+        return false;
     }
-    if (field) field->setFocus();
-    if (refused) tell(tr("A value is refused: mend it, or press Esc in its field."));
-    return !refused;
+    for (StepPage* page : step_pages_) {
+        const QString why = page->take_typed();
+        if (why.isEmpty()) continue;
+        show_step(page->step());
+        tell(why);
+        return false;
+    }
+    return true;
 }
 
 // Empty: nothing may be written. The dialog asks about a file of the name that was typed, not about the one with the ending.
@@ -142,7 +141,6 @@ void MainWindow::import_project() {
 }
 
 void MainWindow::make_report() {
-    if (!desk_.is_open()) return tell(tr("No project is open."));
     const QFileInfo project(QString::fromStdString(desk_.path().string()));
     const QString file = QFileDialog::getSaveFileName(
         this, tr("Hand-over report"), project.path() + "/" + project.completeBaseName() + ".pdf",
@@ -161,7 +159,6 @@ void MainWindow::make_report() {
 }
 
 void MainWindow::mirror_project() {
-    if (!desk_.is_open()) return tell(tr("No project is open."));
     if (!may_leave()) return;
     MirrorDialog dialog(this);
     if (dialog.exec() != QDialog::Accepted) return;
@@ -181,7 +178,6 @@ void MainWindow::mirror_project() {
 }
 
 void MainWindow::reteach() {
-    if (!desk_.is_open()) return tell(tr("No project is open."));
     ExchangeDialog dialog(desk_.project(), this);
     if (dialog.exec() != QDialog::Accepted) return;
     const auto moved = desk_.reteach(dialog.exchange());

@@ -12,6 +12,7 @@
 #include "app/studio/main_window.h"
 #include "app/studio/sign_in_dialog.h"
 #include "app/studio/studio.h"
+#include "widgets/menu_signs.h"
 #include "widgets/pages/run_page.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
@@ -61,7 +62,7 @@ void MainWindow::make_status() {
 
 void MainWindow::refresh_next() {
     const auto say = [this](const QString& text) {
-        next_->setText(wrapped(text, next_->fontMetrics(), next_->width() - kNextMargin_px));
+        next_->setText(wrapped(with_signs(text), next_->fontMetrics(), next_->width() - kNextMargin_px));
         next_->setMinimumHeight(std::max(style::kTargetPx, next_->sizeHint().height()));  // all its lines
         next_->setAccessibleName(text);
         next_->setToolTip(text);
@@ -73,6 +74,7 @@ void MainWindow::refresh_next() {
         next_->style()->unpolish(next_);
         next_->style()->polish(next_);
     }
+    if (!desk_.is_open()) return say(tr("Open a project, or make a new one in the menu File"));
     if (push_waits()) return say(tr("A push waits for your answer: go to Run"));
     if (run_page_->asks()) return say(tr("Answer above: push, or do not push"));
     for (const StepState& s : desk_.steps()) {

@@ -30,6 +30,7 @@ constexpr int kRecent = 10;
 Studio::Studio(QApplication& application, const StudioOptions& options)
     : application_(application), options_(options) {
     link_resources();
+    application_.installEventFilter(&plain_words_);
     application_.installEventFilter(&wheel_guard_);
     application_.installEventFilter(&list_habits_);
     settings_ = options.settings.isEmpty()

@@ -8,6 +8,7 @@
 
 #include "widgets/desk/desk.h"
 #include "widgets/editors/list_habits.h"
+#include "widgets/editors/plain_words.h"
 #include "widgets/editors/wheel_guard.h"
 
 namespace seamwright {
@@ -52,6 +53,7 @@ class Studio : public QObject {
     QApplication& application_;
     StudioOptions options_;
     std::unique_ptr<QSettings> settings_;
+    PlainWords plain_words_;
     WheelGuard wheel_guard_;
     ListHabits list_habits_;
     QTranslator texts_, qt_texts_;

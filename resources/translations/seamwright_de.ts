@@ -3194,6 +3194,14 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <source>camera</source>
         <translation>Kamera</translation>
     </message>
+    <message>
+        <source>%1: the settings are not taken over, %2.</source>
+        <translation>%1: Die Einstellungen werden nicht übernommen, %2.</translation>
+    </message>
+    <message>
+        <source>Mend them, or press Esc in the form: the old ones come back.</source>
+        <translation>Berichtigen, oder im Formular Esc drücken: dann stehen die alten wieder da.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::CommandPalette</name>
@@ -4454,10 +4462,6 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <translation>Nach Austausch von Sensor oder Roboter...</translation>
     </message>
     <message>
-        <source>No project is open.</source>
-        <translation>Es ist kein Projekt offen.</translation>
-    </message>
-    <message>
         <source>Hand-over report</source>
         <translation>Übergabebericht</translation>
     </message>
@@ -4577,6 +4581,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <source>Stay</source>
         <translation>Bleiben</translation>
     </message>
+    <message>
+        <source>Open a project, or make a new one in the menu File</source>
+        <translation>Ein Projekt öffnen, oder im Menü Datei ein neues anlegen</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::ManualWindow</name>
@@ -4673,6 +4681,17 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>Nothing is made</source>
         <translation>Nichts wird gemacht</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::NameEditor</name>
+    <message>
+        <source>Why the name is refused</source>
+        <translation>Warum der Name abgelehnt wird</translation>
+    </message>
+    <message>
+        <source>refused: %1</source>
+        <translation>abgelehnt: %1</translation>
     </message>
 </context>
 <context>
@@ -6466,6 +6485,10 @@ ausgelassen</translation>
     <message>
         <source>and</source>
         <translation>und</translation>
+    </message>
+    <message>
+        <source>No project is open: open one or make a new one (menu File).</source>
+        <translation>Es ist kein Projekt offen: eines öffnen oder ein neues anlegen (Menü Datei).</translation>
     </message>
 </context>
 <context>

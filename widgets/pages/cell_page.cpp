@@ -1,7 +1,5 @@
 #include "widgets/pages/cell_page.h"
 
-#include <fmt/format.h>
-
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QMenu>
@@ -12,8 +10,10 @@
 #include "devices/simulated/scene/random.h"
 #include "projects/measure/fields.h"
 #include "projects/measure/measure.h"
+#include "widgets/editors/leave_field.h"
 #include "widgets/editors/list_habits.h"
 #include "widgets/editors/parameter_editor.h"
+#include "widgets/menu_signs.h"
 #include "widgets/pages/parts/rename_dialog.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
@@ -24,15 +24,13 @@ namespace {
 constexpr int kSensorRole = Qt::UserRole;
 constexpr const char* kCameraDriver = "genicam";
 constexpr int kName_px = 130;  // of a long name, beside which what the device does has its room
-constexpr std::array kModes{RobotMode::unknown, RobotMode::manual_reduced, RobotMode::manual_full,
-                            RobotMode::automatic, RobotMode::external};
 }  // namespace
 
 CellPage::CellPage(Desk& desk, const Views& views)
     : StepPage(desk, views, Step::cell,
                tr("Which sensors and robots there are, and which part they look at. Connect them here.")) {
     connect_ = make_button("connect", "plug", tr("Connect"), tr("Open all sensors and robots of the project"),
-                           [this] { desk_.worker().connect_devices(); });
+                           [this] { connect_devices(); });
     disconnect_ =
         make_button("disconnect", "unplug", tr("Disconnect"), tr("Let go of all sensors and robots"),
                     [this] { desk_.worker().disconnect_devices(); });
@@ -45,6 +43,13 @@ CellPage::CellPage(Desk& desk, const Views& views)
     devices_->setMinimumHeight(150);
     elide_first_column(*devices_, kName_px);
     connect(devices_, &QTableWidget::currentCellChanged, this, [this] {
+        leave_field(*form_);
+        if (is_pending()) {
+            if (const QString why = refusal(); !why.isEmpty())
+                emit desk_.trouble(not_taken(QString::fromStdString(shown_->id), why));
+            else
+                done(apply());
+        }
         if (sensor_chosen()) desk_.selection().select_sensor(chosen());
         show_device();
     });
@@ -102,6 +107,7 @@ CellPage::CellPage(Desk& desk, const Views& views)
     settings_state_ = make_text({});
     settings_state_->setObjectName("settings_state");
     box().addWidget(settings_state_);
+    connect(&desk_, &Desk::opened, this, [this] { shown_.reset(); });  // what waited belongs to the one before
     connect(driver_, &QComboBox::currentIndexChanged, this, [this] { show_table(); });
     connect(form_, &SettingsEditor::edited, this, [this] {
         const QSignalBlocker quiet(settings_);
@@ -114,8 +120,9 @@ CellPage::CellPage(Desk& desk, const Views& views)
             form_->set_value(*json);
         judge_settings();
     });
-    apply_ = make_button("apply_device", "check", tr("Apply"),
-                         tr("Take driver and settings over; connect again afterwards"), [this] { apply(); });
+    apply_ =
+        make_button("apply_device", "check", tr("Apply"),
+                    tr("Take driver and settings over; connect again afterwards"), [this] { done(apply()); });
     box().addLayout(make_row({apply_}));
     parameters_ = new QWidget;
     parameters_box_ = new QVBoxLayout(parameters_);
@@ -177,6 +184,7 @@ CellPage::CellPage(Desk& desk, const Views& views)
                          [this] { place_part(); });
     auto* home = make_button("home_part", "home", tr("As taught"),
                              tr("The simulated part where it was taught"), [this] {
+                                 if (!take_or_tell()) return;
                                  if (done(desk_.place_simulated_part(Pose::Identity(), 0, 0)))
                                      desk_.worker().connect_devices();
                              });
@@ -244,97 +252,6 @@ void CellPage::refresh() {
     workobject_->refresh(p.part.base_from_workobject, subject());
     simulated_->setVisible(std::any_of(p.sensors.begin(), p.sensors.end(),
                                        [](const SensorSetup& x) { return is_simulated_cell(x.driver); }));
-}
-
-void CellPage::show_device() {
-    const Project& p = desk_.project();
-    const bool sensor = sensor_chosen();
-    const std::string id = chosen();
-    for (QWidget* w : std::initializer_list<QWidget*>{driver_, form_, settings_, rename_, remove_})
-        w->setEnabled(!id.empty());
-    mode_row_->setVisible(!id.empty() && !sensor);
-    QString identity;
-    const auto show = [&](const auto& setup, const std::string& model, RobotMode mode) {
-        identity = setup.identity.serial.empty() ? tr("never connected")
-                                                 : tr("answers as %1, serial %2")
-                                                       .arg(QString::fromStdString(model),
-                                                            QString::fromStdString(setup.identity.serial));
-        show_setup(setup.driver, setup.settings, mode);
-    };
-    if (const SensorSetup* s = find_sensor(p, id); s && sensor)
-        show(*s, s->identity.vendor + " " + s->identity.model, RobotMode::unknown);
-    if (const RobotSetup* r = find_robot(p, id); r && !sensor)
-        show(*r, r->identity.brand + " " + r->identity.model, r->required_mode);
-    if (id.empty()) {
-        shown_setup_.clear();
-        settings_->clear();
-        show_table();
-    }
-    answers_->setText(identity);
-    stripe_->refresh(sensor ? find_sensor(p, id) : nullptr);
-    show_parameters();
-}
-
-// As the project has it. What was chosen or typed and is not taken over yet stays until the project has something else.
-void CellPage::show_setup(const std::string& driver, const nlohmann::json& settings, RobotMode mode) {
-    const std::string setup =
-        fmt::format("{} {} {} {} {}", sensor_chosen(), chosen(), driver, to_string(mode), settings.dump());
-    if (setup == shown_setup_) return;
-    shown_setup_ = setup;
-    {
-        const QSignalBlocker quiet(driver_);
-        driver_->clear();
-        const auto list = [&](const auto& drivers) {
-            for (const auto& d : drivers) {
-                driver_->addItem(QString::fromStdString(std::string(d.name)));
-                driver_->setItemData(driver_->count() - 1, shown(Text::chosen(d.help)), Qt::ToolTipRole);
-            }
-        };
-        sensor_chosen() ? list(sensor_drivers()) : list(robot_drivers());
-        driver_->setCurrentText(QString::fromStdString(driver));
-    }
-    for (std::size_t i = 0; i < kModes.size(); ++i)
-        if (kModes[i] == mode) mode_->setCurrentIndex(static_cast<int>(i));
-    const QString text = QString::fromStdString(settings.dump(2));
-    if (settings_->toPlainText() != text) settings_->setPlainText(text);
-    show_table();
-}
-
-// The form of the chosen driver, filled with what the text says.
-void CellPage::show_table() {
-    static const SettingTable none;
-    const SettingTable* table = &none;
-    const std::string driver = driver_->currentText().toStdString();
-    const auto look = [&](const auto& drivers) {
-        for (const auto& d : drivers)
-            if (d.name == driver) table = &d.settings();
-    };
-    if (!chosen().empty()) sensor_chosen() ? look(sensor_drivers()) : look(robot_drivers());
-    if (table != shown_table_) {
-        shown_table_ = table;
-        form_->set_table(*table);
-    }
-    if (const auto json = parse_json(settings_->toPlainText().toStdString(), {}); json && json->is_object())
-        form_->set_value(*json);
-    judge_settings();
-}
-
-void CellPage::judge_settings() {
-    QString why;
-    const auto json = parse_json(settings_->toPlainText().toStdString(), {});
-    if (!chosen().empty()) {
-        if (!json) {
-            why = tr("refused: this is no JSON");
-        } else if (form_->refused()) {
-            why = tr("refused: see the marked field");
-        } else if (shown_table_) {
-            if (const auto ok = check_settings(*json, {}, *shown_table_); !ok)
-                why = tr("refused: %1").arg(shown_error(ok.error()));
-        }
-    }
-    set_verdict(*settings_state_, why, why.isEmpty() ? Tone::plain : Tone::alarm);
-    settings_state_->setVisible(!why.isEmpty());
-    apply_->setEnabled(why.isEmpty() && !chosen().empty());
 }
 
 // The connected sensor's own settings; made anew when another sensor is shown.
@@ -406,10 +323,11 @@ void CellPage::offer_cameras(const std::vector<DiscoveredCamera>& found) {
     menu->setObjectName("cameras");
     menu->setAttribute(Qt::WA_DeleteOnClose);
     for (const DiscoveredCamera& c : found)
-        menu->addAction(tr("%1 %2, serial %3, at %4")
-                            .arg(QString::fromStdString(c.vendor), QString::fromStdString(c.model),
-                                 QString::fromStdString(c.serial), QString::fromStdString(c.address)),
-                        this, [this, c] { take_camera(c); });
+        menu->addAction(
+            with_signs(tr("%1 %2, serial %3, at %4")
+                           .arg(QString::fromStdString(c.vendor), QString::fromStdString(c.model),
+                                QString::fromStdString(c.serial), QString::fromStdString(c.address))),
+            this, [this, c] { take_camera(c); });
     if (found.empty())
         menu->addAction(tr("No camera has answered: check power, cable and the network's address"))
             ->setEnabled(false);
@@ -444,28 +362,11 @@ void CellPage::remove_device() {
 }
 
 void CellPage::rename_device() {
-    if (chosen().empty()) return;
+    if (chosen().empty() || !take_or_tell()) return;
     ask_name(this, tr("Rename"), chosen(),
              [this, from = chosen(), sensor = sensor_chosen()](const std::string& to) {
                  return sensor ? desk_.rename<SensorSetup>(from, to) : desk_.rename<RobotSetup>(from, to);
              });
-}
-
-void CellPage::apply() {
-    const auto settings = parse_json(settings_->toPlainText().toStdString(), {});
-    if (!settings) return;
-    if (sensor_chosen()) {
-        SensorSetup s = *find_sensor(desk_.project(), chosen());
-        s.driver = driver_->currentText().toStdString();
-        s.settings = *settings;
-        done(desk_.edit(s, tr("settings")));
-    } else {
-        RobotSetup r = *find_robot(desk_.project(), chosen());
-        r.driver = driver_->currentText().toStdString();
-        r.settings = *settings;
-        r.required_mode = kModes[static_cast<std::size_t>(std::max(0, mode_->currentIndex()))];
-        done(desk_.edit(r, tr("settings")));
-    }
 }
 
 void CellPage::import_part() {
@@ -482,6 +383,7 @@ void CellPage::import_part() {
 }
 
 void CellPage::place_part() {
+    if (!take_or_tell()) return;
     Random random(0x5ea3, ++placed_ + static_cast<std::uint64_t>(desk_.undo_stack().index()));
     Eigen::Vector3d t, w;
     for (int i = 0; i < 3; ++i) t[i] = random.uniform(-10, 10) / std::sqrt(3.0);

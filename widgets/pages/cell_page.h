@@ -4,6 +4,8 @@
 #include <QComboBox>
 #include <QLineEdit>
 #include <QPlainTextEdit>
+#include <array>
+#include <optional>
 
 #include "devices/genicam/genicam.h"
 #include "widgets/editors/parameter_editor.h"
@@ -18,18 +20,39 @@ class CellPage : public StepPage {
     Q_OBJECT
   public:
     CellPage(Desk& desk, const Views& views);
+    QString take_typed() override;
 
   protected:
     void refresh() override;
     QWidget* due() override;
+    void keyPressEvent(QKeyEvent* event) override;
 
   private:
     void add_device(bool sensor);
     void remove_device();
     void rename_device();
-    void apply();
+    static constexpr std::array kModes{RobotMode::unknown, RobotMode::manual_reduced, RobotMode::manual_full,
+                                       RobotMode::automatic, RobotMode::external};
+    // A sensor's mode is RobotMode::unknown.
+    struct Setup {
+        bool sensor = false;
+        std::string id, driver;
+        nlohmann::json settings;
+        RobotMode mode = RobotMode::unknown;
+        bool operator==(const Setup&) const = default;
+    };
+    std::optional<Setup> stored(bool sensor, const std::string& id) const;  // in the project
+    bool is_pending() const;  // the form has something that the project has not
+    std::string driver() const;
+    RobotMode mode() const;
+    QString refusal() const;  // of what the form has; empty: none
+    static QString not_taken(const QString& id, const QString& why);
+    Expected<void> apply();  // of the device that is shown
+    bool take_or_tell();
+    void take_back();  // the form shows the project's again
+    void connect_devices();
     void show_device();
-    void show_setup(const std::string& driver, const nlohmann::json& settings, RobotMode mode);
+    void show_setup(const Setup& setup);
     void show_table();
     void judge_settings();
     void show_parameters();
@@ -53,7 +76,8 @@ class CellPage : public StepPage {
     StripePanel* stripe_;
     std::vector<ParameterEditor*> requirements_;
     const SettingTable* shown_table_ = nullptr;
-    std::string shown_parameters_, shown_setup_;
+    std::string shown_parameters_;
+    std::optional<Setup> shown_;  // what the form was filled with
     std::uint64_t placed_ = 0;
 };
 

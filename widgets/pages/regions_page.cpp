@@ -7,6 +7,7 @@
 #include "projects/measure/measure.h"
 #include "projects/proof/forecast.h"
 #include "projects/proof/known_shift.h"
+#include "projects/station/check.h"
 #include "widgets/editors/list_habits.h"
 #include "widgets/pages/parts/rename_dialog.h"
 #include "widgets/shown_text.h"
@@ -121,16 +122,15 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
     in->addLayout(grid);
 
     in->addWidget(make_heading(tr("Frame on the controller")));
-    frame_ = new QLineEdit;
-    frame_->setObjectName("frame_name");
-    add_field(*in, tr("Name"), frame_,
-              tr("As the controller calls the base or work object that the path runs in"));
-    connect(frame_, &QLineEdit::editingFinished, this, [this] {
-        if (!region()) return;
+    const QString frame_tip = tr("As the controller calls the base or work object that the path runs in");
+    frame_ = new NameEditor(tr("Name"), frame_tip, [this](const std::string& name) -> Expected<void> {
+        if (!region()) return {};
         Region r = *region();
-        r.frame_name = frame_->text().trimmed().toStdString();
-        done_or_shown(desk_.edit(r, tr("frame")));
+        r.frame_name = name;
+        return desk_.edit(r, tr("frame"));
     });
+    frame_->line().setObjectName("frame_name");
+    add_field(*in, tr("Name"), frame_, frame_tip);
     frame_pose_ = new PoseEditor;
     frame_pose_->setObjectName("frame_pose");
     frame_pose_->setAccessibleName(tr("Frame as taught"));
@@ -182,6 +182,8 @@ void RegionsPage::add_region(std::vector<std::string> spot_ids) {
     Region r;
     r.id = desk_.free_id<Region>("Region");
     r.frame_name = "BASE_" + r.id;
+    for (int n = 2; !frame_of_its_own(desk_.project(), r); ++n)
+        r.frame_name = "BASE_" + r.id + "_" + std::to_string(n);
     r.base_from_frame = desk_.project().part.base_from_workobject;
     r.spot_ids = std::move(spot_ids);
     const std::string id = r.id;
@@ -297,7 +299,7 @@ void RegionsPage::refresh() {
         }
         if (scroll >= 0) spots_->setCurrentRow(scroll);
         for (std::size_t i = 0; i < 6; ++i) free_[i]->setChecked(r->free[i]);
-        if (!frame_->hasFocus()) frame_->setText(QString::fromStdString(r->frame_name));
+        frame_->refresh(r->frame_name, subject(r->id));
         frame_pose_->refresh(r->base_from_frame, subject(r->id));
         for (std::size_t i = 0; i < editors_.size(); ++i)
             editors_[i]->refresh(region_fields()[i].get(*r), subject(r->id));

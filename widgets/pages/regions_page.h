@@ -2,10 +2,10 @@
 // Regions: which spots, what may move, limits, and what that will be able to tell.
 
 #include <QCheckBox>
-#include <QLineEdit>
 #include <QListWidget>
 #include <array>
 
+#include "widgets/editors/name_editor.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
 #include "widgets/pages/parts/budget_panel.h"
@@ -36,7 +36,7 @@ class RegionsPage : public StepPage {
     QPushButton *proven_ = nullptr, *rename_, *remove_;
     QWidget* inspector_;
     std::array<QCheckBox*, 6> free_{};
-    QLineEdit* frame_;
+    NameEditor* frame_;
     PoseEditor* frame_pose_;
     std::vector<ParameterEditor*> editors_;
     QLabel *verdict_, *advice_;

@@ -5,6 +5,7 @@
 #include "projects/measure/measure.h"
 #include "projects/measure/reference_feature.h"
 #include "projects/proof/checklist.h"
+#include "widgets/menu_signs.h"
 #include "widgets/pages/parts/form.h"
 #include "widgets/style.h"
 
@@ -125,9 +126,9 @@ void SpotHead::refresh() {
             break;
         case SpotDeed::next_spot:
             state_->setText(tr("Taught and aligned."));
-            deed_->setText(
+            deed_->setText(with_signs(
                 tr("Next: spot %1")
-                    .arg(QString::fromStdString(next_undone(desk_, desk_.selection().spot())->id)));
+                    .arg(QString::fromStdString(next_undone(desk_, desk_.selection().spot())->id))));
             break;
         case SpotDeed::next_step:
             state_->setText(tr("All spots are taught and aligned."));

@@ -30,6 +30,13 @@ StepPage::StepPage(Desk& desk, const Views& views, Step step, const QString& pur
     connect(&desk_, &Desk::checklist_changed, this, &StepPage::later);
     connect(&desk_, &Desk::runs_changed, this, &StepPage::later);
     connect(&desk_.selection(), &Selection::changed, this, &StepPage::later);
+    connect(&desk_, &Desk::opened, this, &StepPage::let_edit);
+    let_edit();
+}
+
+void StepPage::let_edit() {
+    setEnabled(desk_.is_open());
+    if (head_) head_->setEnabled(desk_.is_open());
 }
 
 QVBoxLayout& StepPage::make_head() {
@@ -39,6 +46,7 @@ QVBoxLayout& StepPage::make_head() {
     box->setSpacing(6);
     box->addWidget(title_);
     box->addWidget(state_);
+    let_edit();
     return *box;
 }
 
@@ -62,12 +70,14 @@ void StepPage::later() {
     QTimer::singleShot(0, this, [this] {
         due_ = false;
         const StepState& s = desk_.steps()[static_cast<std::size_t>(step_)];
-        const Tone tone = s.stale                        ? Tone::attention
+        const Tone tone = s.stale || !desk_.is_open()    ? Tone::attention
                           : s.status == StepStatus::done ? Tone::good
                           : s.status == StepStatus::next ? Tone::plain
                                                          : Tone::attention;
+        const QString word = status_word(s.stale ? StepStatus::stale : s.status);
         set_verdict(*state_,
-                    tr("%1: %2").arg(s.stale ? status_word(StepStatus::stale) : status_word(s.status), s.why),
+                    desk_.is_open() ? tr("%1: %2").arg(word, s.why)
+                                    : tr("No project is open: open one or make a new one (menu File)."),
                     tone);
         refresh();
         fit_head();

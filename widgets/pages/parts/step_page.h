@@ -22,6 +22,9 @@ class StepPage : public QWidget {
     QWidget* head() const { return head_; }
     // Brings the control into view that the step's open item is done with, and gives it the focus.
     virtual void point_out();
+    // Before the project is saved, left or connected: what was typed here and waits for a key of the page counts. Empty, or
+    // why it is refused.
+    virtual QString take_typed() { return {}; }
 
   signals:
     void step_wanted(seamwright::Step step);
@@ -56,6 +59,7 @@ class StepPage : public QWidget {
   private:
     void later();
     void fit_head();
+    void let_edit();  // only a project that is there
     Step step_;
     QVBoxLayout* box_;
     QLabel *title_, *state_;

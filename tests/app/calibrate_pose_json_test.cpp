@@ -239,5 +239,27 @@ TEST(CalibrateJson, PlateStaticAndDrift) {
     EXPECT_NEAR(moved->document["change_mm"].get<double>(), std::sqrt(0.77), 0.15);
 }
 
+// Nothing but the advised views of the one sphere that the sensor was calibrated with, as the desk hands them on.
+TEST(CalibrateJson, TheAdvisedViewsTellWhetherACalibrationHolds) {
+    const CalibrationMethod& method = *find_method("drift");
+    int holds = 0, drifted = 0;
+    for (unsigned seed = 300; seed < 320; ++seed) {
+        Random random(seed);
+        const SphereCell cell = any_cell(random);
+        const auto first = solve_calibration(*find_method("tcp-sphere"),
+                                             sphere_json(cell, sphere_observations(cell, 12, random)), {});
+        ASSERT_TRUE(first.has_value()) << first.error().sentence();
+        json drift = sphere_json(cell, sphere_observations(cell, method.advised, random));
+        for (const char* key : {"flange_from_sensor", "centre_base_mm", "covariance"})
+            drift[key] = first->document[key];
+        const auto answer = solve_calibration(method, drift, {});
+        ASSERT_TRUE(answer.has_value()) << answer.error().sentence();
+        holds += answer->document["status"] == "holds" ? 1 : 0;
+        drifted += answer->document["status"] == "drifted" ? 1 : 0;
+    }
+    EXPECT_GE(holds, 16);
+    EXPECT_LE(drifted, 1);
+}
+
 }  // namespace
 }  // namespace seamwright

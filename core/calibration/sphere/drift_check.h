@@ -59,12 +59,14 @@ Expected<DriftMeasurement> drift_measurement(const SphereObservation& observatio
                                              const Eigen::Vector3d& known_centre_base_mm,
                                              double other_sigma_mm);
 
-// A turn of 0.2 degrees costs 0.05 mm on a part that stands 15 mm off (0 where it stands as taught), and is
-// about what three spheres in four views each can see.
+// A turn of 0.3 degrees costs 0.08 mm on a part that stands 15 mm off (0 where it stands as taught), and is what
+// one sphere in kDriftViews views, near and far, left and right, can tell beside a good calibration's own sigma
+// of 0.1 degree; fewer views mostly leave it open.
 struct DriftLimits {
     double translation_mm = 0.1;
-    double rotation_deg = 0.2;
+    double rotation_deg = 0.3;
 };
+inline constexpr int kDriftViews = 9;
 
 enum class DriftStatus { holds, drifted, undetermined };
 std::string_view name_of(DriftStatus status);

@@ -219,7 +219,7 @@ CalibrationMethod drift_method() {
     m.capture = CaptureKind::sphere_profile;
     m.use = AnswerUse::check;
     m.fewest = 1;
-    m.advised = 3;
+    m.advised = kDriftViews;
     m.robot = m.model = m.repeatability = true;
     m.keeps_back = false;
     m.settings = {
@@ -232,7 +232,7 @@ CalibrationMethod drift_method() {
     m.title = "Does the calibration still hold?";
     m.why = "Measures the sphere again and says whether the sensor has moved on its flange.";
     m.need = {"The sphere where it stood when the sensor was calibrated.",
-              "3 poses from different directions."};
+              "9 poses from different directions, the sphere near and far, left and right in the view."};
     m.file = "JSON with stored calibration and new profiles";
     m.drawing = SetUpDrawing::moved_sphere;
     return m;

@@ -104,13 +104,14 @@ Expected<Answer> compare(const ModesArguments& a) {
                    {"gain", c.gain()}};
     answer.text = fmt::format(
         "region {}: {} modes; every spot predicted from the other spots, on parts that were not learnt from "
-        "({} "
-        "parts, {} predictions, the modes acted in {})\n"
+        "({} parts, {} predictions, the modes acted in {})\n"
         "bead between spots, 3 sigma: rigid {:.4f} mm, with modes {:.4f} mm ({:.2f} times better); stated "
-        "{:.4f} "
-        "mm, {:.1f} % inside the stated 95 %; the noise of the predicted spot is in all of them\n",
+        "{:.4f} mm; the noise of the predicted spot is in all of them\n",
         c.region_id, c.modes, c.parts, c.predictions, c.acted, c.rigid.three_sigma, c.elastic.three_sigma,
-        c.gain(), c.stated_three_sigma, 100 * c.inside);
+        c.gain(), c.stated_three_sigma);
+    if (c.acted > 0)
+        answer.text +=
+            fmt::format("where the modes acted, {:.1f} % lie inside the stated 95 %\n", 100 * c.inside);
     answer.exit_code = c.modes > 0 && c.gain() > 1 ? kExitOk : kExitVerdict;
     return answer;
 }

@@ -21,12 +21,16 @@ double rise(const PolynomialFit& f, double y, double from, double to) {
     return s * (c[1] + s * (c[2] + s * c[3])) + slope * (y - s);
 }
 
-// Within the noise of both slopes the two drifts are one.
-double differ_mm(const Drift& own, const Drift& drift, double jitter_mm) {
+// Within the noise of both slopes the two drifts are one; so they are where one step of `grain_mm` in the middle of the travel
+// makes as large a slope (of a cubic 2.8 times the step over the travel).
+double differ_mm(const Drift& own, const Drift& drift, double jitter_mm, double grain_mm) {
     constexpr double kSure = 4;  // sigmas
-    const auto differs = [](const PolynomialFit& a, const PolynomialFit& b) {
+    constexpr double kOneStep = 3;
+    const double step = kOneStep * grain_mm / (own.to - own.from);
+    const auto differs = [step](const PolynomialFit& a, const PolynomialFit& b) {
         const double by = a.coefficient[1] - b.coefficient[1];
-        return std::abs(by) > kSure * std::hypot(a.coefficient_sigma[1], b.coefficient_sigma[1]) ? by : 0.0;
+        const double noise = kSure * std::hypot(a.coefficient_sigma[1], b.coefficient_sigma[1]);
+        return std::abs(by) > std::max(noise, step) ? by : 0.0;
     };
     return std::hypot(differs(own.x, drift.x), differs(own.z, drift.z)) * jitter_mm;
 }
@@ -145,21 +149,25 @@ double follow_point(const Reference& best, std::span<const TravelProfile> pass,
     const Drift whole = drift;
     const std::vector<TravelOffset> whole_offsets = offsets;
     double most = 0;
-    const auto consider = [&](const std::vector<TravelOffset>& own_offsets, bool farther) {
+    const auto consider = [&](const std::vector<TravelOffset>& own_offsets, bool farther, double grain_mm) {
         Drift own;
         for (std::size_t i = 0; i < pass.size(); ++i)
             if (i != best.index && own_offsets[i].ok) own.add(own_offsets[i]);
         if (!own.fit()) return;
-        const double apart = differ_mm(own, whole, options.jitter_mm);
+        const double apart = differ_mm(own, whole, options.jitter_mm, grain_mm);
         if (!(apart > 0) || (farther && own.farthest(options.jitter_mm) <= drift.farthest(options.jitter_mm)))
             return;
         most = std::max(most, apart);
+        for (PolynomialFit* fit : {&own.x, &own.z})  // half a step at either end
+            fit->coefficient_sigma[1] = std::hypot(fit->coefficient_sigma[1], grain_mm / (own.to - own.from));
         drift = std::move(own);
         offsets = own_offsets;
     };
+    bool by_piece = false;
     for (const double within_mm : {kInfinity, kNear_mm, kNearest_mm}) {
         const auto piece = register_piece(best, pass, order, point, within_mm);
         if (!piece) continue;
+        by_piece = by_piece || !std::isfinite(within_mm);
         std::vector<TravelOffset> own = whole_offsets;
         for (std::size_t i = 0; i < pass.size(); ++i) {
             const Registered& r = piece->found[i];
@@ -168,19 +176,21 @@ double follow_point(const Reference& best, std::span<const TravelProfile> pass,
             if (r.ok)
                 own[i] = {pass[i].travel_mm, r.shift.x(), r.shift.y(), deg_from_rad(r.phi), r.rms, true};
         }
-        consider(own, std::isfinite(within_mm));
+        consider(own, std::isfinite(within_mm), 0);
     }
     const auto ends = end_offsets(best, pass, order, point);
-    if (!ends.empty()) {
+    if (!ends.off.empty()) {
         std::vector<TravelOffset> own = whole_offsets;
         for (std::size_t i = 0; i < pass.size(); ++i) {
             if (i == best.index) continue;
-            own[i].ok = own[i].ok && ends[i];
+            own[i].ok = own[i].ok && ends.off[i];
             if (!own[i].ok) continue;
-            own[i].dx_mm += ends[i]->x();
-            own[i].dz_mm += ends[i]->y();
+            own[i].dx_mm += ends.off[i]->x();
+            own[i].dz_mm += ends.off[i]->y();
         }
-        consider(own, true);
+        // Of a broken contour whose piece with the point is too straight to be registered the end alone tells: the whole moves by
+        // what lies beside it.
+        consider(own, by_piece || !ends.broken, ends.grain_mm);
     }
     return most;
 }

@@ -225,6 +225,7 @@ struct Break {
     Eigen::Vector2d before, after;
     std::size_t index = 0;
     bool clear = false;  // no steep flank, whose lines stand as far apart as a narrow one's
+    double grain_before_mm = 0, grain_after_mm = 0;  // from either to its next point
 };
 std::vector<Break> breaks_of(const Profile& p) {
     constexpr double kOfPitch = 5, kLeast_mm = 0.3, kClear = 3;
@@ -242,7 +243,8 @@ std::vector<Break> breaks_of(const Profile& p) {
     std::vector<Break> out;
     for (std::size_t i = 0; i < apart.size(); ++i)
         if (apart[i] > least)
-            out.push_back({points[i], points[i + 1], index[i + 1], apart[i] > kClear * least});
+            out.push_back({points[i], points[i + 1], index[i + 1], apart[i] > kClear * least,
+                           i > 0 ? apart[i - 1] : 0, i + 1 < apart.size() ? apart[i + 1] : 0});
     return out;
 }
 
@@ -250,24 +252,21 @@ std::vector<Break> breaks_of(const Profile& p) {
 struct ContourEnd {
     Eigen::Vector2d at;
     bool begins = false, clear = true;
+    double grain_mm = 0;  // to its next point
 };
 std::vector<ContourEnd> ends_of(const Profile& p) {
     std::vector<ContourEnd> out;
-    Eigen::Vector2d first = Eigen::Vector2d::Zero(), last = first;
-    bool any = false;
-    for (std::size_t i = 0; i < p.size(); ++i) {
-        if (!usable(p, i)) continue;
-        last = {p.x_mm[i], p.z_mm[i]};
-        if (!any) first = last;
-        any = true;
-    }
-    if (!any) return out;
-    out.push_back({first, true});
+    std::vector<Eigen::Vector2d> points;
+    for (std::size_t i = 0; i < p.size(); ++i)
+        if (usable(p, i)) points.emplace_back(p.x_mm[i], p.z_mm[i]);
+    if (points.size() < 2) return out;
+    const std::size_t last = points.size() - 1;
+    out.push_back({points.front(), true, true, (points[1] - points[0]).norm()});
     for (const Break& b : breaks_of(p)) {
-        out.push_back({b.before, false, b.clear});
-        out.push_back({b.after, true, b.clear});
+        out.push_back({b.before, false, b.clear, b.grain_before_mm});
+        out.push_back({b.after, true, b.clear, b.grain_after_mm});
     }
-    out.push_back({last, false});
+    out.push_back({points.back(), false, true, (points[last] - points[last - 1]).norm()});
     return out;
 }
 
@@ -311,17 +310,17 @@ std::optional<Reference> register_piece(const Reference& reference, std::span<co
     return r;
 }
 
-std::vector<std::optional<Eigen::Vector2d>> end_offsets(const Reference& reference,
-                                                        std::span<const TravelProfile> pass,
-                                                        const std::vector<std::size_t>& order,
-                                                        const Eigen::Vector2d& point) {
+EndOffsets end_offsets(const Reference& reference, std::span<const TravelProfile> pass,
+                       const std::vector<std::size_t>& order, const Eigen::Vector2d& point) {
     constexpr double kNear_mm = 1.5, kLost_mm = 2;
     const std::vector<ContourEnd> taught = ends_of(pass[reference.index].profile);
     const auto off = [&](const ContourEnd& e) { return (e.at - point).norm(); };
     const auto own = std::min_element(taught.begin(), taught.end(),
                                       [&](const auto& a, const auto& b) { return off(a) < off(b); });
     if (own == taught.end() || off(*own) > kNear_mm || !own->clear) return {};
-    std::vector<std::optional<Eigen::Vector2d>> out(pass.size());
+    EndOffsets answer{std::vector<std::optional<Eigen::Vector2d>>(pass.size())};
+    auto& out = answer.off;
+    std::vector<double> grains{own->grain_mm};
     const double y0 = pass[reference.index].travel_mm;
     // Outwards from the reference, each searched for where its inner neighbour's was.
     for (const bool forward : {true, false}) {
@@ -337,7 +336,7 @@ std::vector<std::optional<Eigen::Vector2d>> end_offsets(const Reference& referen
             if (!f.ok) continue;
             const PlanarMotion motion = motion_of(f, point);
             const Eigen::Rotation2Dd back(-motion.phi_rad);
-            double nearest = kLost_mm;
+            double nearest = kLost_mm, grain_mm = 0;
             for (const ContourEnd& e : ends_of(pass[i].profile)) {
                 if (e.begins != own->begins) continue;
                 const Eigen::Vector2d moved =
@@ -345,11 +344,21 @@ std::vector<std::optional<Eigen::Vector2d>> end_offsets(const Reference& referen
                 if ((moved - last).norm() > nearest) continue;
                 nearest = (moved - last).norm();
                 out[i] = moved;
+                grain_mm = e.grain_mm;
             }
-            if (out[i]) last = *out[i];
+            if (!out[i]) continue;
+            last = *out[i];
+            grains.push_back(grain_mm);
         }
     }
-    return out;
+    // Now and then a return is missing beside the end.
+    constexpr double kUsual = 0.8;
+    const auto usual =
+        grains.begin() + static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(grains.size() - 1));
+    std::nth_element(grains.begin(), usual, grains.end());
+    answer.grain_mm = *usual;
+    answer.broken = taught.size() > 2;
+    return answer;
 }
 
 double growth_mm(const Reference& reference, std::span<const TravelProfile> pass,

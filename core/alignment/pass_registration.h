@@ -49,10 +49,14 @@ std::optional<Reference> register_piece(const Reference& reference, std::span<co
 
 // Where in every profile that end of the contour stands, or that side of a break, on which the reference point lies (within 1.5
 // mm): off its place by the registration, in the reference's frame; nothing where it is not seen. Empty: none is as near.
-std::vector<std::optional<Eigen::Vector2d>> end_offsets(const Reference& reference,
-                                                        std::span<const TravelProfile> pass,
-                                                        const std::vector<std::size_t>& order,
-                                                        const Eigen::Vector2d& point);
+// An end is the last point of a contour, which steps by whole points where the edge moves by less: by up to `grain_mm`.
+struct EndOffsets {
+    std::vector<std::optional<Eigen::Vector2d>> off;
+    double grain_mm = 0;
+    bool broken = false;  // the contour has more ends than its two
+};
+EndOffsets end_offsets(const Reference& reference, std::span<const TravelProfile> pass,
+                       const std::vector<std::size_t>& order, const Eigen::Vector2d& point);
 
 // How much the pieces of the contour grow or sink against each other within the jitter, beyond their noise.
 double growth_mm(const Reference& reference, std::span<const TravelProfile> pass,

@@ -91,10 +91,12 @@ TEST_F(DeadDevices, ARobotThatDiesIsNotCalledOk) {
 
 TEST_F(DeadDevices, NothingStaysOfADisconnectedSensorOrAnotherProject) {
     desk().worker().disconnect_devices();
-    ASSERT_TRUE(me->wait([&] { return state().contains("not connected"); })) << state().toStdString();
+    ASSERT_TRUE(me->wait([&] {
+        return state().contains("not connected") && status().contains("not connected");
+    })) << state().toStdString()
+        << status().toStdString();
     EXPECT_EQ(plot().size(), 0U);
     EXPECT_EQ(studio->window().views().camera->histogram().pixels, 0);
-    EXPECT_TRUE(status().contains("not connected"));
     EXPECT_FALSE(status().contains("R1")) << status().toStdString();
     picture("disconnected");
 

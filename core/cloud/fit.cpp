@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/cloud/coarse.h"
 #include "core/cloud/fit_steps.h"
@@ -22,7 +23,6 @@ constexpr double kCaptureOfStart = 0.05, kCaptureOfSearch = 0.1, kCaptureOfRival
 constexpr double kSidedWorse = 0.2;
 // Normals that look to either side at random leave so many points less, or so much farther off.
 constexpr double kNormalsMatch = 0.9, kNormalsOff = 1.5, kMedianOff = 0.1;
-constexpr double kSettled_mm = 0.1;  // a motion by the form's model that is not repeated
 // Of the part's size, at its corners: a pose near by; the same rival.
 constexpr double kNearPose = 0.004, kSameRival = 0.01;
 // Of the points: fewer speak for nothing. Poses near by and those on a sheet's other face differ at its ends alone.
@@ -54,6 +54,12 @@ double badness(const Cloud& judges, const Surface& surface, const Pose& pose, do
     for (const double d : distances(judges, surface, pose, gate_mm, facing)) sum += d * d;
     return sum / (gate_mm * gate_mm * static_cast<double>(judges.size()));
 }
+
+struct Contender {
+    Pose pose;
+    bool other_face = false;
+    double form_mm = std::numeric_limits<double>::infinity();  // the part's as it would have it, where known
+};
 
 class Fit {
   public:
@@ -161,10 +167,9 @@ class Fit {
     }
 
     void settle(const Pose& near, const RefineOptions& options) {
-        const Refined r = refine(levels_.fine, surface_, near, options);
-        system_ = r.system;
-        rigid_ = out_.base_from_part = r.base_from_part;
-        out_.gate_mm = r.gate_mm;
+        settled_ = refine(levels_.fine, surface_, near, options);
+        rigid_ = out_.base_from_part = settled_.base_from_part;
+        out_.gate_mm = settled_.gate_mm;
     }
 
     bool on_the_part() {
@@ -173,16 +178,16 @@ class Fit {
              distances(levels_.judges, surface_, out_.base_from_part, 2 * out_.gate_mm, facing_))
             near += d < out_.gate_mm;
         out_.share_on_part = static_cast<double>(near) / static_cast<double>(levels_.judges.size());
-        out_.points_used = system_.matched;
+        out_.points_used = settled_.system.matched;
         if (!within_start(out_.base_from_part, surface_, options_))
             return refuse(FitStatus::no_fit,
                           Text("the fit left its start by more than {:g} mm or {:g} degrees",
                                options_.start_mm, options_.start_deg));
         const double limit = options_.form_limit_mm > 0 ? options_.form_limit_mm : kFormLimit * size_;
-        if (!(system_.median_mm <= limit))
-            return refuse(FitStatus::no_fit,
-                          Text("half of the points lie more than {:.2f} mm off the part", system_.median_mm));
-        if (out_.share_on_part < options_.share_needed || system_.matched < 30)
+        if (!(settled_.system.median_mm <= limit))
+            return refuse(FitStatus::no_fit, Text("half of the points lie more than {:.2f} mm off the part",
+                                                  settled_.system.median_mm));
+        if (out_.share_on_part < options_.share_needed || settled_.system.matched < 30)
             return refuse(FitStatus::no_fit,
                           Text("only {:.0f} % of the scan lie on the part", 100 * out_.share_on_part));
         return true;
@@ -194,8 +199,8 @@ class Fit {
         const Eigen::Matrix3d part_from_base = out_.base_from_part.linear().transpose();
         in_part.topRows(3) = part_from_base * motions.topRows(3);
         in_part.bottomRows(3) = part_from_base * motions.bottomRows(3);
-        return correction::name_directions(in_part, out_.base_from_part.inverse() * system_.middle,
-                                           system_.spread_mm);
+        return correction::name_directions(in_part, out_.base_from_part.inverse() * settled_.system.middle,
+                                           settled_.system.spread_mm);
     }
 
     bool open(const Eigen::MatrixXd& motions) {
@@ -206,63 +211,31 @@ class Fit {
     }
 
     bool closed_directions() {
-        const SymmetricEigen e = symmetric_eigen(system_.information / system_.weight);
+        const SymmetricEigen e = symmetric_eigen(settled_.system.information / settled_.system.weight);
         Eigen::Index loose = 0;
         while (loose < 6 && e.values[loose] < kOpenShare) ++loose;
         return loose == 0 || open(e.vectors.leftCols(loose));
     }
 
     bool sure() {
-        // The points that lie on the part as the rigid fit has it: with a bent part its own place leaves them off it.
-        const Cloud seen = within_gate(levels_.fine);
-        double moved_mm = 0;
-        for (int round = 0; round < 2; ++round) {
-            if (stopped(options_)) return refuse(FitStatus::cancelled, "cancelled");
-            const auto residuals =
-                residuals_of(seen, surface_, out_.base_from_part, out_.gate_mm + moved_mm, facing_);
-            const double scatter = scatter_mm_ = local_noise_mm(residuals);
-            // Of a raw point: thinning averaged over so many.
-            const double averaged =
-                std::sqrt(static_cast<double>(out_.points) / static_cast<double>(levels_.fine.size()));
-            out_.noise_mm = options_.noise_mm > 0 ? options_.noise_mm : scatter * averaged;
-            if (!std::isfinite(scatter))
-                return refuse(FitStatus::no_fit, "the scan is too thin to tell its noise");
-            const FormSolution s =
-                solve_with_form(form_nodes(residuals, system_, scatter),
-                                plate_axes(surface_, out_.base_from_part), system_.middle, system_.spread_mm);
-            if (!s.solved) return refuse(FitStatus::no_fit, "the scan covers too few places of the part");
-            const Matrix6 to_tangent =
-                tangent_of_motion(out_.base_from_part, system_.middle, system_.spread_mm);
-            motion_covariance_ = s.covariance;
-            out_.covariance = to_tangent * s.covariance * to_tangent.transpose();
-            Matrix6 information = Matrix6::Zero();
-            for (const Residual& r : residuals) {
-                Vector6 row;
-                row << r.normal, (r.place - system_.middle).cross(r.normal) / system_.spread_mm;
-                information += row * row.transpose() / (r.noise_mm2 > 0 ? r.noise_mm2 : scatter * scatter);
-            }
-            out_.covariance_noise = to_tangent * inverse_matrix(information) * to_tangent.transpose();
-            out_.form_mm = s.form_mm;
-            out_.form_length_mm = s.length_mm;
-            out_.base_from_part = retract(out_.base_from_part, to_tangent * s.motion);
-            if (s.motion.norm() < kSettled_mm) break;
-            moved_mm +=
-                4 * s.motion.norm();  // a rotation's entry is that at the spread; points lie farther out
-        }
-        const SymmetricEigen e = symmetric_eigen(motion_covariance_);
+        if (stopped(options_)) return refuse(FitStatus::cancelled, "cancelled");
+        const Stated own = stated(levels_.fine, surface_, settled_, facing_);
+        scatter_mm_ = own.scatter_mm;
+        // Of a raw point: thinning averaged over so many.
+        const double averaged =
+            std::sqrt(static_cast<double>(out_.points) / static_cast<double>(levels_.fine.size()));
+        out_.noise_mm = options_.noise_mm > 0 ? options_.noise_mm : scatter_mm_ * averaged;
+        if (!own.reason.empty()) return refuse(FitStatus::no_fit, own.reason);
+        out_.base_from_part = own.base_from_part;
+        out_.covariance = own.covariance;
+        out_.covariance_noise = own.covariance_noise;
+        out_.form_mm = own.form_mm;
+        out_.form_length_mm = own.form_length_mm;
+        const SymmetricEigen e = symmetric_eigen(own.motion_covariance);
         Eigen::Index vague = 0;
         while (vague < 6 && 3 * std::sqrt(std::max(0.0, e.values[5 - vague])) > options_.sigma_limit_mm)
             ++vague;
         return vague == 0 || open(e.vectors.rightCols(vague));
-    }
-
-    Cloud within_gate(const Cloud& cloud) const {
-        const std::vector<double> off =
-            distances(cloud, surface_, out_.base_from_part, 2 * out_.gate_mm, facing_);
-        std::vector<std::size_t> kept;
-        for (std::size_t i = 0; i < cloud.size(); ++i)
-            if (off[i] <= out_.gate_mm) kept.push_back(i);
-        return picked(cloud, kept);
     }
 
     Refined by_few(const Pose& pose) const {
@@ -273,24 +246,44 @@ class Fit {
                       {std::max(4 * out_.gate_mm, floor_), floor_, 60, facing_});
     }
 
-    bool beyond_the_stated(const Pose& pose, const Pose& found) const {
+    Refined by_all(const Pose& pose) const {
+        return refine(levels_.fine, surface_, pose,
+                      {std::max(4 * out_.gate_mm, floor_), floor_, 60, facing_});
+    }
+
+    static bool beyond(const Matrix6& covariance, const Pose& pose, const Pose& found) {
         if (angle_rad(pose, found) > 1) return true;
         const Vector6 d = difference(pose, found);
-        return d.dot(solve_symmetric(out_.covariance, d).col(0)) > kNoOtherPlace;
+        return d.dot(solve_symmetric(covariance, d).col(0)) > kNoOtherPlace;
+    }
+    bool beyond_the_stated(const Pose& pose, const Pose& found) const {
+        return beyond(out_.covariance, pose, found);
     }
 
     // Rivals are refined without a bend, so it is the rigid fit that they are compared with; near by, the same points
     // find the same place. A pose that has not settled lies off the part and would count as told apart.
-    bool elsewhere(Pose& pose, bool other_face) {
-        if (!other_face) {
-            if (!near_by(pose)) return beyond_the_stated(pose, out_.base_from_part);
-            if (!beyond_the_stated(pose, few_)) return false;
-        }
+    bool elsewhere(Contender& rival) {
+        Pose& pose = rival.pose;
+        if (rival.other_face) return on_another_face(rival);
+        if (!near_by(pose)) return beyond_the_stated(pose, out_.base_from_part);
+        if (!beyond_the_stated(pose, few_)) return false;
         pose = by_judges(pose).base_from_part;
         if (!beyond_the_stated(pose, judged_)) return false;
-        pose = refine(levels_.fine, surface_, pose, {std::max(4 * out_.gate_mm, floor_), floor_, 60, facing_})
-                   .base_from_part;
+        pose = by_all(pose).base_from_part;
         return beyond_the_stated(pose, rigid_) && !known(pose, ended_);
+    }
+    // On the wrong face of a curved sheet the misfit passes for a deviation of form, and the region that is stated with
+    // it holds the right face too: each of the two is asked whether the other lies in what it would state.
+    bool on_another_face(Contender& rival) {
+        const Refined there = by_all(by_judges(rival.pose).base_from_part);
+        rival.pose = there.base_from_part;
+        if (corner_distance_mm(surface_, rival.pose, rigid_) < kSettled_mm || known(rival.pose, ended_))
+            return false;
+        const Stated own = stated(levels_.fine, surface_, there, facing_);
+        if (own.reason.empty()) rival.form_mm = own.form_mm;
+        return beyond_the_stated(rival.pose, rigid_) ||
+               (own.reason.empty() && (beyond_the_stated(own.base_from_part, out_.base_from_part) ||
+                                       beyond(own.covariance, out_.base_from_part, own.base_from_part)));
     }
     // Many starts end at one place.
     bool known(const Pose& pose, std::vector<Pose>& poses) const {
@@ -321,10 +314,6 @@ class Fit {
         few_ = by_few(rigid_).base_from_part;
         ended_.clear();
         judged_ = by_judges(rigid_).base_from_part;
-        struct Contender {
-            Pose pose;
-            bool other_face = false;
-        };
         std::vector<Contender> candidates;
         std::vector<Pose> begun{few_};
         if (!facing_)
@@ -352,11 +341,9 @@ class Fit {
         const double form = std::max({kLeastForm_mm, 3 * out_.form_mm, 3 * local_judges_mm()});
         for (Contender& candidate : candidates) {
             if (!candidate.other_face && known(candidate.pose, begun)) continue;
-            if (!elsewhere(candidate.pose, candidate.other_face) ||
-                !within_start(candidate.pose, surface_, options_))
-                continue;
+            if (!elsewhere(candidate) || !within_start(candidate.pose, surface_, options_)) continue;
             // Of several that ended near one another the one that is nearest to being as good.
-            FitRival rival = compared(candidate.pose, candidate.other_face, form);
+            FitRival rival = compared(candidate, form);
             rival.other_face = candidate.other_face;
             const auto same = std::find_if(out_.rivals.begin(), out_.rivals.end(), [&](const FitRival& r) {
                 return corner_distance_mm(surface_, r.base_from_part, candidate.pose) < kSameRival * size_;
@@ -386,13 +373,15 @@ class Fit {
     }
 
     // Of sheets the rival may turn out to be the better one.
-    FitRival compared(const Pose& pose, bool other_face, double form) {
-        if (!other_face && !near_by(pose))
+    FitRival compared(const Contender& contender, double form) {
+        const Pose& pose = contender.pose;
+        if (!contender.other_face && !near_by(pose))
             return compare(levels_.judges, surface_, rigid_, pose, form, std::max(out_.gate_mm, 6 * form),
                            kLeastShare, facing_);
         // Two faces are off alike by what the whole part is off anyway; of a small step a point says on which side it lies.
-        form =
-            std::min(3 * std::max(out_.form_mm, scatter_mm_), corner_distance_mm(surface_, pose, rigid_) / 2);
+        // What the part is off is what the face says on which it is less.
+        form = std::min(3 * std::max(std::min(out_.form_mm, contender.form_mm), scatter_mm_),
+                        corner_distance_mm(surface_, pose, rigid_) / 2);
         bool better = false;
         const FitRival rival = facing_
                                    ? compare(levels_.fine, surface_, rigid_, pose, form,
@@ -414,8 +403,7 @@ class Fit {
     double size_ = 0, gate_ = 0, floor_ = 0;
     bool facing_ = false, by_normals_ = false;
     Levels levels_;
-    FitSystem system_;
-    Matrix6 motion_covariance_ = Matrix6::Zero();
+    Refined settled_;
     Pose rigid_ = Pose::Identity();                            // before the form's model moved it
     Pose few_ = Pose::Identity(), judged_ = Pose::Identity();  // the same place as fewer points have it
     double scatter_mm_ = 0;                                    // of a point of the fine level

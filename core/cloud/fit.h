@@ -13,9 +13,11 @@
 //
 // A sheet that is drawn with its thickness has two faces that explain a scan of one of them alike. Each face's points
 // are put on the opposite one and refined; only what is seen of the sheet's ends, or much of both faces, then speaks
-// for the one: not the nuts and clamps that stand on it. Where every point has its side - towards the sensor, else its
-// normal, outwards - it lies on a face that looks there. Normals of undecided sign are noticed and not used; those that
-// all look inwards are not.
+// for the one: not the nuts and clamps that stand on it. They may have drawn the fit to the wrong face, where the
+// misfit of a curved sheet passes for deviation of form: each face is asked whether the other lies in the region that
+// it would state, and what a point is off anyway is the form of the face that has less. Where every point has its
+// side - towards the sensor, else its normal, outwards - it lies on a face that looks there. Normals of undecided
+// sign are noticed and not used; those that all look inwards are not.
 //
 // Refused: under_determined, directions that the seen surface leaves open, named; ambiguous; no_fit, where the scan is
 // not of this part or starts too far away. Degenerate: planes, cylinders and spheres leave directions open; boxes and

@@ -13,6 +13,7 @@ inline constexpr double kFormLimit = 0.015;
 inline constexpr double kNoOtherPlace = 15;
 // A point that speaks for a rival weighs against so many that speak for the best.
 inline constexpr std::size_t kAgainstRival = 3;
+inline constexpr double kSettled_mm = 0.1;  // a motion by the form's model that is not repeated
 
 // The residuals of a pose, point by point: what the form's model and the noise are taken from.
 struct Residual {
@@ -30,6 +31,17 @@ std::vector<FormNode> form_nodes(const std::vector<Residual>& residuals, const F
 
 // The part's longer axes and its thinnest, in base.
 PlateAxes plate_axes(const Surface& surface, const Pose& base_from_part);
+
+// A rigid fit with the form's model about it.
+struct Stated {
+    Text reason;  // why there is nothing to state; empty where there is
+    Pose base_from_part = Pose::Identity();
+    Matrix6 motion_covariance = Matrix6::Zero();  // of FitSystem's unknowns
+    Matrix6 covariance = Matrix6::Zero(), covariance_noise = Matrix6::Zero();
+    double scatter_mm = 0;  // of a point of the cloud beside its neighbours
+    double form_mm = 0, form_length_mm = 0;
+};
+Stated stated(const Cloud& cloud, const Surface& surface, const Refined& rigid, bool facing);
 
 // Starts for rivals of `best`: the same part turned by symmetries, tilted and shifted along its axes. With a start only
 // what stays within its tolerance.

@@ -31,42 +31,6 @@ bool GapSides::lower(const Sheet& b, const Sheet& a) const {
                kGroundSlope * std::abs(points_.x[b.last] - points_.x[b.first]);
 }
 
-// Of interleaved lines neither steepness nor a missing return can be told: the two pieces with most points; of a single
-// one, as two sheets in flush with nothing seen between them are to the filter, what lies before and behind its widest hole.
-GapSides::Found GapSides::two_pieces(int least, Core& before, Core& after) const {
-    const FeaturePoints::Piece *first = nullptr, *second = nullptr;
-    for (const auto& piece : points_.pieces) {
-        if (piece.count < least) continue;
-        if (!first || piece.count > first->count) {
-            second = first;
-            first = &piece;
-        } else if (!second || piece.count > second->count) {
-            second = &piece;
-        }
-    }
-    if (!first) return Found::no_points;
-    const auto core = [&](int begin, int count) { return Core{raw_[begin], raw_[begin + count - 1]}; };
-    if (second) {
-        if (second->first < first->first) std::swap(first, second);
-        before = core(first->first, first->count);
-        after = core(second->first, second->count);
-        return Found::both;
-    }
-    const int end = first->first + first->count;
-    int behind = 0;
-    double widest = 0;
-    for (int i = first->first + least; i + least <= end; ++i) {
-        const double dx = points_.x[i] - points_.x[i - 1], dz = points_.z[i] - points_.z[i - 1];
-        if (!points_.pitch.is_gap(dx, dz) || std::hypot(dx, dz) <= widest) continue;
-        widest = std::hypot(dx, dz);
-        behind = i;
-    }
-    if (behind == 0) return Found::one_surface;
-    before = core(first->first, behind - first->first);
-    after = core(behind, end - behind);
-    return Found::both;
-}
-
 // Over whatever divides them: what the two show beside it lies on one line.
 bool GapSides::in_line(const Sheet& a, const Sheet& b) const {
     const End before = end_of(a, true, kLinePoints), after = end_of(b, false, kLinePoints);
@@ -86,7 +50,9 @@ GapSides::Found GapSides::two_cores(int least, double panel_mm, Core& before, Co
             const int smaller = std::min(sheets_[i].count, sheets_[j].count),
                       both = sheets_[i].count + sheets_[j].count;
             bool free = smaller >= least;
-            bool open = j == i + 1 && is_hole(sheets_[i].last, sheets_[j].first);
+            // Heads that look from either side see the ground on below the panels.
+            const bool under_it = interleaved_ && points_.x[sheets_[j].first] < points_.x[sheets_[i].last];
+            bool open = j == i + 1 && !under_it && is_hole(sheets_[i].last, sheets_[j].first);
             for (std::size_t k = i + 1; k < j && free; ++k) {
                 const bool ground = lower(sheets_[k], sheets_[i]) && lower(sheets_[k], sheets_[j]);
                 free = ground || kOfItsSize * sheets_[k].count < smaller;

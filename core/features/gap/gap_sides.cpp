@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
+#include "core/features/gap/gap_heads.h"
 #include "core/features/gap/gap_limits.h"
+#include "core/median.h"
 #include "core/numbers.h"
 
 namespace seamwright {
@@ -37,16 +41,33 @@ constexpr double kSlopeNoise = 3;  // sigma in the height over which a slope is 
 
 }  // namespace
 
-// A sensor sees its lines one after the other, evenly apart.
+// A sensor sees its lines one after the other, evenly apart where their rays cross one height. A ray leans by t = a + b x, and
+// what a return is off in z by its noise it is off in x by -t of that, as the second differences of both tell.
 bool GapSides::interleaved() const {
-    std::size_t neighbours = 0, off = 0;
-    for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
-        const double lines = std::abs(x_[i + 1] - x_[i]) / pitch_;
-        if (lines > kHole) continue;
-        ++neighbours;
-        off += std::abs(lines - 1) > kOffLines;
+    const int n = static_cast<int>(x_.size());
+    double zz = 0, xzz = 0, xxzz = 0, zx = 0, xzx = 0, middle = 0;
+    for (const double z : z_) middle += z / n;
+    for (int i = 1; i + 1 < n; ++i) {
+        if (std::max(std::abs(x_[i] - x_[i - 1]), std::abs(x_[i + 1] - x_[i])) > kHole * pitch_) continue;
+        const double x = x_[i - 1] - 2 * x_[i] + x_[i + 1], z = z_[i - 1] - 2 * z_[i] + z_[i + 1];
+        zz += z * z, xzz += x_[i] * z * z, xxzz += x_[i] * x_[i] * z * z;
+        zx += z * x, xzx += x_[i] * z * x;
     }
-    return static_cast<double>(off) > kInterleaved * static_cast<double>(neighbours);
+    const double det = zz * xxzz - xzz * xzz;
+    const double a = det > 0 ? -(xxzz * zx - xzz * xzx) / det : 0,
+                 b = det > 0 ? -(zz * xzx - xzz * zx) / det : 0;
+    scratch_.clear();
+    for (int i = 0; i + 1 < n; ++i)
+        scratch_.push_back(std::abs(x_[i + 1] + (a + b * x_[i + 1]) * (z_[i + 1] - middle) - x_[i] -
+                                    (a + b * x_[i]) * (z_[i] - middle)));
+    const double line = median(scratch_);
+    int neighbours = 0, off = 0;
+    for (const double s : scratch_) {
+        if (s > kHole * line) continue;
+        ++neighbours;
+        off += std::abs(s - line) > kOffLines * line;
+    }
+    return off > kInterleaved * neighbours;
 }
 
 bool GapSides::smooths() const {
@@ -196,7 +217,6 @@ int GapSides::break_between(const Core& before, const Core& after) const {
     const double noise = std::max(noise_of(before.first, before.last), noise_of(after.first, after.last));
     // Where single returns may be missing the contour goes on behind them, seen from either side.
     const auto is_break = [&](int i) {
-        if (interleaved_) return true;
         const int lines = missing(i, i + 1) + 1;
         if (lines > chance_lines_) return true;
         const double rise = z_[i + 1] - z_[i], width = pitch_ * lines;
@@ -386,14 +406,44 @@ GapSides::Found GapSides::find(const Profile& profile, const FeatureWindow& wind
     interleaved_ = interleaved();
     ground_first_ = ground_last_ = -1;
     Core before{}, after{};
-    if (!interleaved_) {
+    thread_local HeadsContour heads;
+    if (interleaved_) {
+        heads.arrange(points_, noise_.point_mm);
+        x_ = points_.x;
+        z_ = points_.z;
+        raw_.resize(x_.size());
+        std::iota(raw_.begin(), raw_.end(), 0);
+        chance_lines_ = hole_lines_ = kHoleLines;
+        sheets_.clear();
+        for (const auto& [first, last] : heads.sheets())
+            sheets_.push_back({first, last, last - first + 1, first, last});
+    } else {
         chance_lines_ = chance_lines();
         hole_lines_ = std::max(kHoleLines, chance_lines_);
         divide();
     }
-    const Found found =
-        interleaved_ ? two_pieces(least, before, after) : two_cores(least, panel_mm, before, after);
+    const double own_noise = noise_.point_mm;
+    if (interleaved_) noise_.point_mm = heads.noise_mm();
+    const Found found = two_cores(least, panel_mm, before, after);
+    noise_.point_mm = own_noise;
     if (found != Found::both) return found;
+    if (interleaved_) {
+        heads.share_faces(points_, {before.first, before.last}, {after.first, after.last});
+        for (const bool of_after : {false, true}) {
+            const Core& core = of_after ? after : before;
+            GapPart& part = parts_[of_after ? 1 : 0];
+            part = {std::move(part.x), std::move(part.z), noise_of(core.first, core.last)};
+            part.face = true;
+            raw_ = heads.face(of_after);
+            for (int i = core.first; i <= core.last; ++i) raw_.push_back(i);
+            std::sort(raw_.begin(), raw_.end(),
+                      [&](int i, int j) { return of_after ? x_[i] < x_[j] : x_[i] > x_[j]; });
+            part.x.clear();
+            part.z.clear();
+            for (const int i : raw_) part.x.push_back(x_[i]), part.z.push_back(z_[i]);
+        }
+        return Found::both;
+    }
     const bool ground = ground_first_ >= 0;
     const int cut = ground ? ground_first_ - 1 : break_between(before, after);
     if (cut < 0) return Found::unbroken;
@@ -411,9 +461,8 @@ GapSides::Found GapSides::find(const Profile& profile, const FeatureWindow& wind
     }
     part_before.noise_mm = noise_before;
     part_after.noise_mm = noise_after;
-    part_before.lost_share = part_after.lost_share =
-        interleaved_ ? 0 : lost_share(before, {after_end, after.last});
-    part_before.face = part_after.face = interleaved_;
+    part_before.lost_share = part_after.lost_share = lost_share(before, {after_end, after.last});
+    part_before.face = part_after.face = false;
     part_before.smoothed_lines = part_after.smoothed_lines = smooths() ? noise_.apart() : 1;
     int last = walked(before.last, 1, cut + 1, noise_before, part_before);
     int first = walked(after_end, -1, after_stop, noise_after, part_after);
@@ -421,7 +470,7 @@ GapSides::Found GapSides::find(const Profile& profile, const FeatureWindow& wind
         part.x.push_back(x_[i]);
         part.z.push_back(z_[i]);
     };
-    if (ground && !interleaved_) take_drawn_steps(before, {after_end, after.last}, last, first);
+    if (ground) take_drawn_steps(before, {after_end, after.last}, last, first);
     for (int i = last; i >= before.first; --i) take(part_before, i);
     for (int i = first; i <= after.last; ++i) take(part_after, i);
     return Found::both;

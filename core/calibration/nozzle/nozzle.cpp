@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/calibration/nozzle/next_touch.h"
+#include "core/calibration/nozzle/place_doubt.h"
 #include "core/calibration/nozzle/radius_doubt.h"
 #include "core/calibration/nozzle/wrong_touches.h"
 #include "core/calibration/numbers.h"
@@ -197,19 +198,39 @@ Text names_of(const std::vector<std::size_t>& list, const std::vector<NozzleTouc
     return all;
 }
 
-void judge(const std::vector<NozzleTouch>& touches, const WrongTouches& found, NozzleResult& result) {
+// Where touches were left out, leaving them out would explain it as well.
+Judgement of_other_place(const OtherPlace& place, const std::vector<NozzleTouch>& touches,
+                         const WrongTouches& found) {
+    const Eigen::Vector3d& off = place.off_mm;
+    const Text where(
+        "by the touches the target stands {:.2f} mm from its given place, by {:.2f}, {:.2f}, {:.2f} mm in X, "
+        "Y, "
+        "Z of the base, more than its sigma allows",
+        off.norm(), off.x(), off.y(), off.z());
+    const Text again = "measure the target's place again and touch it where it stands then";
+    if (found.wrong.empty()) return {Verdict::poor, where, again};
+    const Text names = names_of(found.wrong, touches);
+    return {Verdict::poor, joined(where, "; ", Text("or these touches slipped: {}", names)),
+            joined(again, "; ", Text("or repeat {}", names))};
+}
+
+void judge(const std::vector<NozzleTouch>& touches, const WrongTouches& found,
+           const std::optional<OtherPlace>& place, NozzleResult& result) {
     const TouchFit& fit = found.fit;
     const double three = 3 * result.worst_sigma_mm;
     const bool contradict = !fit.estimated && contradicts_stated(fit.misfit, fit.freedom);
     const Text figures("three sigma of the tip {:.3f} mm, the touches scatter by {:.3f} mm", three,
                        result.rms_mm);
     const Text next = next_touch(found.set, fit);
+    const auto radius = other_radius(found.set, fit);
     Judgement& j = result.report.judgement;
-    if (!found.either.empty())
+    if (place && !(radius && place->radius_as_well))
+        j = of_other_place(*place, touches, found);
+    else if (!found.either.empty())
         j = {Verdict::poor,
              Text("one of the touches {} slipped, and nothing tells which", names_of(found.either, touches)),
              joined("repeat them", "; ", next)};
-    else if (const auto radius = other_radius(found.set, fit))
+    else if (radius)
         j = {Verdict::poor,
              Text("by the touches the sphere's radius and that of the tip's ball are {:.2f} mm together, not "
                   "{:.2f} mm",
@@ -260,8 +281,8 @@ Expected<NozzleResult> calibrate_nozzle(const std::vector<NozzleTouch>& touches,
     SEAM_OK(check_noise(options));
     SEAM_TRY(const auto used, chosen(touches, options, result.report));
     if (used.empty()) return input_error("every touch is excluded", "touches", "keep four or more");
-    WrongTouches found =
-        without_wrong_touches(set_of(touches, used, target, options), options.thorough ? used.size() / 4 : 0);
+    const TouchSet whole = set_of(touches, used, target, options);
+    WrongTouches found = without_wrong_touches(whole, options.thorough ? used.size() / 4 : 0);
     for (auto* list : {&found.kept, &found.wrong, &found.either})
         for (std::size_t& i : *list) i = used[i];
     if (!found.fit.solved || !found.fit.determined() || found.fit.other) {
@@ -275,10 +296,15 @@ Expected<NozzleResult> calibrate_nozzle(const std::vector<NozzleTouch>& touches,
     result.status = NozzleStatus::ok;
     state_tip(found.set, found.fit, options, result);
     put_residuals(touches, found, result);
+    const auto place = other_place(whole, found);
     for (const std::size_t i : found.wrong) {
         PoseResidual& p = result.report.poses[i];
         p.used = false;
-        p.note = Text("slipped: contradicts the other touches by {:.2f} mm", p.rms_mm);
+        p.note = place ? Text(
+                             "left out: contradicts the other touches by {:.2f} mm, or the target stands "
+                             "elsewhere",
+                             p.rms_mm)
+                       : Text("slipped: contradicts the other touches by {:.2f} mm", p.rms_mm);
     }
     if (!found.wrong.empty())
         result.notices.push_back(
@@ -288,7 +314,7 @@ Expected<NozzleResult> calibrate_nozzle(const std::vector<NozzleTouch>& touches,
         result.report.poses[i].note = "this or another one slipped";
     }
     if (options.thorough) result.report.hold_out = hold_out(found);
-    judge(touches, found, result);
+    judge(touches, found, place, result);
     return result;
 }
 

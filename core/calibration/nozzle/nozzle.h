@@ -28,6 +28,10 @@
 // drop once in a thousand (Bonferroni over the touches); where two touches explain it as well, neither is left out, both
 // are named and the verdict is poor.
 //
+// c is tested besides, where the flange was turned: the verdict is poor and names where the target stands when the touches
+// with a free c fit better than chance allows (F of three, 5 in a thousand), and when a free c that leaves out fewer
+// touches explains them as well as leaving out does. A target that was knocked looks like slipped touches otherwise.
+//
 // Degenerate, named with the next touch that closes it, never regularised: fewer than four touches of a sphere, touches
 // in a plane through which the tip can be mirrored (a second place fits as well), a direction of the tip known worse
 // than 2 mm.

@@ -34,6 +34,7 @@ constexpr int kMostSteep = 40;          // points over which steepness is judged
 constexpr int kFewEndPoints = 4;
 constexpr double kSmooths = 1.5;                       // lines that share their noise
 constexpr double kRampStep = 0.5;                      // of the steepest: such a step belongs to the ramp
+constexpr double kWholeStep = 0.7;                     // of what falls about it, between two lines
 constexpr double kByChance = 1e-3;                     // holes of missing returns in a profile
 constexpr double kLeastDrawn = 4, kDrawnBeyond = 1.5;  // lines of a step; of those that likeness explains
 constexpr double kDrawnAlike = 0.25;
@@ -345,6 +346,18 @@ int GapSides::walked(int from, int step, int stop, double noise, GapPart& part) 
     double steepest = 0;
     for (int i = edge, k = 0; k < ramp_lines && i != stop; i += step, ++k)
         steepest = std::max(steepest, std::abs(z_[i + step] - z_[i]) / lines(i, i + step));
+    // A median draws no ramp: it leaves the step whole, between two lines.
+    const std::size_t inner_lines = std::min(trail_.size() - 1, static_cast<std::size_t>(ramp_lines));
+    const int top = before(inner_lines);
+    int foot = edge;
+    for (int k = 0; k < ramp_lines && foot != stop; ++k) foot += step;
+    for (std::size_t k = 0; k < inner_lines; ++k)
+        steepest =
+            std::max(steepest, std::abs(z_[before(k)] - z_[before(k + 1)]) / lines(before(k), before(k + 1)));
+    if (steepest > kSteep * pitch_ + gate && steepest > kWholeStep * std::abs(z_[foot] - z_[top])) {
+        part.ramp = false;
+        return edge;
+    }
     const double least = std::max(kSteep * pitch_, kRampStep * steepest);
     for (int k = 1; k < ramp_lines && trail_.size() > 1 && trail_.back() != from; ++k) {
         const int last = trail_.back(), inner = trail_[trail_.size() - 2];

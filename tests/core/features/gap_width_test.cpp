@@ -307,6 +307,31 @@ TEST(GapWidth, ASensorThatMeansManyLinesOverDeepGround) {
                 }
 }
 
+// A median leaves a step where it is: no ramp of it is to be given back.
+TEST(GapWidth, ASensorThatTakesMediansDrawsNoRamp) {
+    std::mt19937_64 engine(55);
+    std::normal_distribution<double> normal;
+    for (const int lines : {3, 7})
+        for (int trial = 0; trial < 20; ++trial) {
+            std::vector<double> raw;
+            Profile p;
+            for (double x = -20 + 0.005 * trial; x < 24; x += 0.1) {
+                p.x_mm.push_back(x);
+                raw.push_back((x < 0 || x > 4 ? 0 : -8) + 0.02 * normal(engine));
+            }
+            p.z_mm = raw;
+            for (std::size_t k = lines / 2; k + lines / 2 < raw.size(); ++k) {
+                std::vector<double> around(raw.begin() + k - lines / 2, raw.begin() + k + lines / 2 + 1);
+                std::sort(around.begin(), around.end());
+                p.z_mm[k] = around[lines / 2];
+            }
+            EXPECT_TRUE(filter_profile(p, {}));
+            const GapFlush g = GapFlushGauge({}).measure(p);
+            ASSERT_EQ(g.status, GapFlushStatus::ok) << g.message;
+            EXPECT_NEAR(g.gap_mm, 4, 0.11) << lines;
+        }
+}
+
 // One return below the contour, where the rim grows steep, must not end the part there.
 TEST(GapWidth, ASparkOnTheRimIsNoEdge) {
     constexpr double kPitch = 0.055, kGap = 4;

@@ -296,7 +296,7 @@ Expected<NozzleResult> calibrate_nozzle(const std::vector<NozzleTouch>& touches,
     result.status = NozzleStatus::ok;
     state_tip(found.set, found.fit, options, result);
     put_residuals(touches, found, result);
-    const auto place = other_place(whole, found);
+    const auto place = options.thorough ? other_place(whole, found) : std::nullopt;
     for (const std::size_t i : found.wrong) {
         PoseResidual& p = result.report.poses[i];
         p.used = false;

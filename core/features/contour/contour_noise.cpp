@@ -82,6 +82,7 @@ constexpr double kAsMany = 4;
 ContourNoise contour_noise(std::span<const double> x, std::span<const double> z,
                            std::vector<double>& scratch) {
     ContourNoise noise;
+    noise.rounding_mm = z_rounding_mm(x, z);
     noise.point_mm = std::max(difference_noise_mm(x, z, scratch, 1), z_quantum_mm(x, z) / std::sqrt(12.0));
     if (!(noise.point_mm > 0) || !even(x, scratch)) return noise;
     const double step = std::abs(x.back() - x.front()) / double(x.size() - 1);
@@ -92,6 +93,10 @@ ContourNoise contour_noise(std::span<const double> x, std::span<const double> z,
     noise.measured_apart = seen * (kMeasuredApart + kMeasuredRise * std::log(runs));
     noise.point_mm = apart;
     return noise;
+}
+
+double ContourNoise::shared_rounding_mm2(double rms_mm) const {
+    return std::max(rounding_mm * rounding_mm / 12 - rms_mm * rms_mm, 0.0);
 }
 
 double contour_noise_mm(std::span<const double> x, std::span<const double> z, std::vector<double>& scratch) {

@@ -17,6 +17,9 @@ struct ContourNoise {
     double point_mm = 0;
     // Of the points that were measured, in lines of the grid; 0: nothing says that they were others than these.
     double measured_apart = 0;
+    double rounding_mm = 0;  // the step of the heights (z_rounding_mm)
+    // The variance of rounded heights that the residuals of a fit do not show: on a level sheet all points are rounded alike.
+    double shared_rounding_mm2(double rms_mm) const;
 };
 ContourNoise contour_noise(std::span<const double> x, std::span<const double> z,
                            std::vector<double>& scratch);

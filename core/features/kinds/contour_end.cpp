@@ -21,7 +21,7 @@
 // distance of the last point when the mean of the last three is more than 2.5 sigma / sqrt(3) off. d: a sensor that gives
 // means of neighbours (ProfileNoise::apart()) has at the end only such of points inwards, which draws the curve that way where
 // the contour slopes; and on a bend every one lies k (m p)^2 / 6 on the inner side, of m points on either side. u: of the
-// rounding of z (z_quantum.h) what the residuals do not show, for on a level sheet all points are rounded alike; n the normal.
+// rounding of z (contour_noise.h) what the residuals do not show, for on a level sheet all points are rounded alike; n the normal.
 // The end is spread evenly over the reach r from the last point on. A plain end: r = q = p, hence p^2 / 12; an interpolated
 // one is spread over p and over f p, narrower than evenly over both. Else the largest of
 //     - the last two steps, when longer than 1.5 p and than noise makes them: returns are missing there;
@@ -54,7 +54,6 @@
 #include "core/features/kinds/feature_kinds.h"
 #include "core/median.h"
 #include "core/numbers.h"
-#include "core/profile/z_quantum.h"
 
 namespace seamwright {
 namespace {
@@ -155,7 +154,7 @@ class ContourEnd final : public FeatureFinder {
         const double misfit = std::max(std::abs(curve.cubic_misfit.dot(powers)), end_misfit(curve));
         const double skew = drawn_off(curve, pitch, s);
         const double across = curve.variance_at(s) + bend * bend + misfit * misfit + skew * skew +
-                              shared_rounding(curve) * normal.y() * normal.y();
+                              sheets_.noise().shared_rounding_mm2(curve.rms_mm) * normal.y() * normal.y();
         const double along =
             (reach * reach - 2 * pitch * measured) / 12 + (reach - step) * (reach - step) / 4 + noise * noise;
         feature.covariance_mm2 = across * normal * normal.transpose() + along * tangent * tangent.transpose();
@@ -211,12 +210,6 @@ class ContourEnd final : public FeatureFinder {
         for (std::size_t i = 1; i + 1 < fit_x_.size(); ++i)
             scratch_.push_back(std::abs(fit_x_[i - 1] - 2 * fit_x_[i] + fit_x_[i + 1]));
         return scratch_.size() < kEndFewestSteps ? 0 : kMadToSigma * median(scratch_) / std::sqrt(6.0);
-    }
-
-    // The variance of rounded heights that the residuals do not show: all of them are off by it alike.
-    double shared_rounding(const EndCurve& curve) const {
-        const double quantum = z_quantum_mm(sheets_.x(), sheets_.z());
-        return std::max(quantum * quantum / 12 - curve.rms_mm * curve.rms_mm, 0.0);
     }
 
     // How far across the curve the point at s is drawn off by means of neighbours: those at the end are of points inwards

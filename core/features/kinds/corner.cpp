@@ -12,7 +12,8 @@
 // noise. Where a third of a side would have to go, the side is bent itself and nothing is left out.
 //
 // Covariance: each line fixes the point across itself with the variance of the fit at that place,
-// sigma_i^2 (1 / n_i + s_i^2 / S_i); two lines with normals N = (n_1 n_2)^T give N^-1 diag(v) N^-T. As the
+// sigma_i^2 (1 / n_i + s_i^2 / S_i), and with what all heights of a level side are rounded by alike
+// (contour_noise.h); two lines with normals N = (n_1 n_2)^T give N^-1 diag(v) N^-T. As the
 // angle between the lines goes to zero this grows without bound along them: below minimum_angle_deg the
 // answer is ill_conditioned. phi_rad is the mean direction of the two lines, from left to right.
 
@@ -316,7 +317,7 @@ class Corner final : public FeatureFinder {
                      sb = b.direction.dot(feature.point_mm - b.centre);
         const Eigen::Matrix2d inverse = normals.inverse();
         feature.covariance_mm2 = inverse *
-                                 Eigen::Vector2d(a.variance_at(sa), b.variance_at(sb)).asDiagonal() *
+                                 Eigen::Vector2d(across(a, sa), across(b, sb)).asDiagonal() *
                                  inverse.transpose();
         const Eigen::Vector2d mean = a.direction + b.direction;
         feature.phi_rad = std::atan2(mean.y(), mean.x());
@@ -332,6 +333,11 @@ class Corner final : public FeatureFinder {
         }
         feature.status = FeatureStatus::ok;
         return feature;
+    }
+
+    double across(const LineFit& line, double s) const {
+        return line.variance_at(s) + workspace_.noise.shared_rounding_mm2(line.rms_mm) *
+                                         line.direction.x() * line.direction.x();
     }
 
     static void drop_near(std::vector<double>& x, std::vector<double>& z, const Eigen::Vector2d& p,

@@ -301,7 +301,7 @@ Expected<NozzleResult> calibrate_nozzle(const std::vector<NozzleTouch>& touches,
         PoseResidual& p = result.report.poses[i];
         p.used = false;
         p.note = place ? Text(
-                             "left out: contradicts the other touches by {:.2f} mm, or the target stands "
+                             "contradicts the other touches by {:.2f} mm, or the target stands "
                              "elsewhere",
                              p.rms_mm)
                        : Text("slipped: contradicts the other touches by {:.2f} mm", p.rms_mm);

@@ -354,7 +354,7 @@ int GapSides::walked(int from, int step, int stop, double noise, GapPart& part) 
     for (std::size_t k = 0; k < inner_lines; ++k)
         steepest =
             std::max(steepest, std::abs(z_[before(k)] - z_[before(k + 1)]) / lines(before(k), before(k + 1)));
-    if (steepest > kSteep * pitch_ + gate && steepest > kWholeStep * std::abs(z_[foot] - z_[top])) {
+    if (ground && steepest > kSteep * pitch_ + gate && steepest > kWholeStep * std::abs(z_[foot] - z_[top])) {
         part.ramp = false;
         return edge;
     }

@@ -23,7 +23,7 @@ using HeadsSheet = std::vector<Eigen::Vector2d>;
 // all that no part hides on the way to the head.
 struct TwoHeads {
     double gap_mm, flush_mm, radius_mm, pitch_mm, noise_mm, ground_mm;
-    bool hem;  // else a face of 2 mm
+    bool hem;  // else a face of 3 mm
 };
 GapFlush seen_by_two(const TwoHeads& s, std::mt19937_64& engine) {
     std::uniform_real_distribution<double> uniform(0, 1);
@@ -35,7 +35,7 @@ GapFlush seen_by_two(const TwoHeads& s, std::mt19937_64& engine) {
         for (int k = 0; k <= 40; ++k)
             o.emplace_back(s.radius_mm * (std::sin(until * k / 40) - 1),
                            s.radius_mm * (std::cos(until * k / 40) - 1));
-        o.emplace_back(s.hem ? -5 : 0, o.back().y() - (s.hem ? 0 : 2));
+        o.emplace_back(s.hem ? -5 : 0, o.back().y() - (s.hem ? 0 : 3));
         for (auto& p : o)
             p = Eigen::Vector2d(-side * p.x() + (side < 0 ? 0 : s.gap_mm),
                                 p.y() + (side < 0 ? 0 : s.flush_mm));
@@ -85,7 +85,7 @@ TEST(GapHeads, NeitherTheGroundNorTheFarFaceIsThePanelOfADoubleHead) {
                                  0.3 + 0.9 * uniform(engine),
                                  0.1,
                                  0.03,
-                                 ground ? 5.5 + 6 * uniform(engine) : 0,
+                                 ground ? 5 + 2 * uniform(engine) : 0,
                                  hem};
                 const GapFlush g = seen_by_two(s, engine);
                 if (g.status != GapFlushStatus::ok) continue;

@@ -20,6 +20,7 @@ constexpr double kShortStretch = 0.25;  // of the stretches beside: part of a ra
 constexpr double kMeetAway = 0.5;       // of the shorter stretch: so far off its end lines may meet
 constexpr double kMoreNoise = 1.1;
 constexpr double kMeetSigma = 8;
+constexpr double kMeetBeside = 1.5;  // steps: three points on a radius do not have its direction at their end
 
 enum class Joint : std::uint8_t { smooth, bend, jump };
 
@@ -139,7 +140,10 @@ const std::vector<Bend>& ContourBends::find(std::span<const double> x, std::span
         const double s = (d.x() * b.direction.y() - d.y() * b.direction.x()) / sine;
         const double t = (d.x() * a.direction.y() - d.y() * a.direction.x()) / sine;
         place = a.centre + s * a.direction;
-        const double free = 2 * blend_mm + kMeetAway * std::min(a.length(), b.length()) +
+        // They meet anywhere up to the next node; nodes of a radius that are no stretch may stand in between.
+        const auto step = [](const Stretch& of) { return of.length() / (of.last - of.first); };
+        const double beside = (b.first - a.last + kMeetBeside) * std::max(step(a), step(b));
+        const double free = 2 * blend_mm + kMeetAway * std::min(a.length(), b.length()) + beside +
                             kMeetSigma * noise_ / std::abs(sine);
         return std::abs(s - a.end) < free && std::abs(t - b.begin) < free;
     };
@@ -164,40 +168,50 @@ const std::vector<Bend>& ContourBends::find(std::span<const double> x, std::span
         joint_[i] = static_cast<std::uint8_t>(joint);
     }
     const auto is = [&](std::size_t i, Joint j) { return joint_[i] == static_cast<std::uint8_t>(j); };
-    // A short stretch between bends to one side belongs to a radius.
-    const auto of_radius = [&](std::size_t i) {
-        if (i == 0 || i + 1 >= m || !is(i - 1, Joint::bend) || !is(i, Joint::bend)) return false;
-        const double before = turn_between(stretches_[i - 1].direction, stretches_[i].direction);
-        const double after = turn_between(stretches_[i].direction, stretches_[i + 1].direction);
-        if (before * after <= 0) return false;
-        double left = 0, right = 0;
-        for (std::size_t k = 0; k < m; ++k) {
-            if (k < i) left = std::max(left, stretches_[k].length());
-            if (k > i) right = std::max(right, stretches_[k].length());
-        }
-        return stretches_[i].length() < kShortStretch * std::min(left, right);
+    // Stretches that go on smoothly are one piece: its last stretch.
+    const auto piece_end = [&](std::size_t i) {
+        while (i + 1 < m && is(i, Joint::smooth)) ++i;
+        return i;
     };
-    for (std::size_t i = 0; i + 1 < m; ++i) {
-        if (!is(i, Joint::bend)) continue;
-        std::size_t end = i + 1;
-        double turn = turn_between(stretches_[i].direction, stretches_[end].direction);
-        while (of_radius(end)) {
-            turn += turn_between(stretches_[end].direction, stretches_[end + 1].direction);
-            ++end;
+    const auto turn_behind = [&](std::size_t i) {
+        return turn_between(stretches_[i].direction, stretches_[i + 1].direction);
+    };
+    const auto longest = [&](std::size_t from, std::size_t end) {
+        double length = 0;
+        for (; from < end; ++from) length = std::max(length, stretches_[from].length());
+        return length;
+    };
+    // A short piece from..to between bends to one side belongs to a radius.
+    const auto of_radius = [&](std::size_t from, std::size_t to) {
+        if (from == 0 || to + 1 >= m || !is(from - 1, Joint::bend) || !is(to, Joint::bend)) return false;
+        if (turn_behind(from - 1) * turn_behind(to) <= 0) return false;
+        double length = 0;
+        for (std::size_t k = from; k <= to; ++k) length += stretches_[k].length();
+        return length < kShortStretch * std::min(longest(0, from), longest(to + 1, m));
+    };
+    for (std::size_t first = 0, before = 0; (before = piece_end(first)) + 1 < m;) {
+        std::size_t begin = before + 1, last = piece_end(begin);
+        if (!is(before, Joint::bend)) {
+            first = begin;
+            continue;
         }
-        std::size_t first = i, last = end;
-        while (first > 0 && is(first - 1, Joint::smooth)) --first;
-        while (last + 1 < m && is(last, Joint::smooth)) ++last;
+        while (of_radius(begin, last)) begin = last + 1, last = piece_end(begin);
+        // Next to the bend a piece may begin with what is left of a radius.
+        std::size_t left = before, right = begin;
+        while (left > first && stretches_[left].length() < kShortStretch * longest(first, before + 1)) --left;
+        while (right < last && stretches_[right].length() < kShortStretch * longest(begin, last + 1)) ++right;
         Bend bend;
-        bend.turn_rad = turn;
-        if (std::abs(turn) < std::numbers::pi && meet(stretches_[i], stretches_[end], bend.place)) {
-            const int before = stretches_[i].last, behind = stretches_[end].first;
+        bend.turn_rad = 0;
+        for (std::size_t k = left; k < right; ++k) bend.turn_rad += turn_behind(k);
+        if (std::abs(bend.turn_rad) < std::numbers::pi &&
+            meet(stretches_[left], stretches_[right], bend.place)) {
+            const int end = stretches_[left].last, behind = stretches_[right].first;
             bend.first = node_first_[std::size_t(stretches_[first].first)];
             bend.last = node_first_[std::size_t(stretches_[last].last) + 1] - 1;
-            bend.split = node_first_[std::size_t((before + 1 + behind + (behind > before)) / 2)];
+            bend.split = node_first_[std::size_t((end + 1 + behind + (behind > end)) / 2)];
             bends_.push_back(bend);
         }
-        i = end - 1;
+        first = begin;
     }
     return bends_;
 }

@@ -88,7 +88,8 @@ double z_rounding_mm(std::span<const double> x, std::span<const double> z) {
             if (step > coarsest) continue;
             std::size_t multiples = 0;
             for (const double at : z.first(n))
-                multiples += std::abs(at - step * std::round(at / step)) <= std::max(nothing, kRounded * step);
+                multiples +=
+                    std::abs(at - step * std::round(at / step)) <= std::max(nothing, kRounded * step);
             if (double(multiples) >= kNearlyAll * double(n)) return step;
         }
     return 0;

@@ -107,7 +107,8 @@ CellPage::CellPage(Desk& desk, const Views& views)
     settings_state_ = make_text({});
     settings_state_->setObjectName("settings_state");
     box().addWidget(settings_state_);
-    connect(&desk_, &Desk::opened, this, [this] { shown_.reset(); });  // what waited belongs to the one before
+    connect(&desk_, &Desk::opened, this,
+            [this] { shown_.reset(); });  // what waited belongs to the one before
     connect(driver_, &QComboBox::currentIndexChanged, this, [this] { show_table(); });
     connect(form_, &SettingsEditor::edited, this, [this] {
         const QSignalBlocker quiet(settings_);

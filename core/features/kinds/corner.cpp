@@ -316,9 +316,8 @@ class Corner final : public FeatureFinder {
         const double sa = a.direction.dot(feature.point_mm - a.centre),
                      sb = b.direction.dot(feature.point_mm - b.centre);
         const Eigen::Matrix2d inverse = normals.inverse();
-        feature.covariance_mm2 = inverse *
-                                 Eigen::Vector2d(across(a, sa), across(b, sb)).asDiagonal() *
-                                 inverse.transpose();
+        feature.covariance_mm2 =
+            inverse * Eigen::Vector2d(across(a, sa), across(b, sb)).asDiagonal() * inverse.transpose();
         const Eigen::Vector2d mean = a.direction + b.direction;
         feature.phi_rad = std::atan2(mean.y(), mean.x());
         feature.points_used = a.used + b.used;
@@ -336,8 +335,8 @@ class Corner final : public FeatureFinder {
     }
 
     double across(const LineFit& line, double s) const {
-        return line.variance_at(s) + workspace_.noise.shared_rounding_mm2(line.rms_mm) *
-                                         line.direction.x() * line.direction.x();
+        return line.variance_at(s) +
+               workspace_.noise.shared_rounding_mm2(line.rms_mm) * line.direction.x() * line.direction.x();
     }
 
     static void drop_near(std::vector<double>& x, std::vector<double>& z, const Eigen::Vector2d& p,

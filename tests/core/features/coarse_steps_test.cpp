@@ -53,8 +53,8 @@ TEST_P(CoarseSteps, AnEndOverGroundIsThatOfItsSheet) {
         int found = 0, within_x = 0, within_z = 0;
         for (int i = 0; i < 60; ++i) {
             const double slope = uniform(steepest, 0), at = uniform(0, 3), z = uniform(-10, 10);
-            const Feature f = end->find(
-                seen(25, [&](double x) { return x < at ? z + slope * (x - at) : z - 8; }));
+            const Feature f =
+                end->find(seen(25, [&](double x) { return x < at ? z + slope * (x - at) : z - 8; }));
             if (f.status != FeatureStatus::ok) continue;
             ++found;
             const Vector2d e = f.point_mm - Vector2d(at, z);
@@ -73,8 +73,7 @@ TEST_P(CoarseSteps, ACornerWithALevelSideIsNoSurerThanItsSteps) {
     int found = 0, within_x = 0, within_z = 0;
     for (int i = 0; i < 60; ++i) {
         const double slope = -std::tan(uniform(0.7, 1.2)), at = uniform(-3, 3), z = uniform(-3, 3);
-        const Feature f =
-            corner->find(seen(12, [&](double x) { return x < at ? z : z + slope * (x - at); }));
+        const Feature f = corner->find(seen(12, [&](double x) { return x < at ? z : z + slope * (x - at); }));
         if (f.status != FeatureStatus::ok) continue;
         ++found;
         const Vector2d e = f.point_mm - Vector2d(at, z);

@@ -36,8 +36,10 @@ TEST_P(RoundedCorner, LiesWhereItsSurfacesMeet) {
         const Vector2d corner(uniform(-3, 3), uniform(-3, 3));
         // The arc's centre lies below the middle of the turn; it begins and ends where a surface has the arc's direction.
         const double middle = 0.5 * (left + right), half_turn = 0.5 * (left - right);
-        const Vector2d centre = corner - k.radius / std::cos(half_turn) * Vector2d(-std::sin(middle), std::cos(middle));
-        const double from = centre.x() - k.radius * std::sin(left), to = centre.x() - k.radius * std::sin(right);
+        const Vector2d centre =
+            corner - k.radius / std::cos(half_turn) * Vector2d(-std::sin(middle), std::cos(middle));
+        const double from = centre.x() - k.radius * std::sin(left),
+                     to = centre.x() - k.radius * std::sin(right);
         Profile p;
         for (double x = -12 + k.pitch * uniform(0, 1); x < 12; x += k.pitch) {
             const double d = x - centre.x();

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "devices/exchange/shown_text.h"
+
 namespace seamwright {
 namespace {
 
@@ -91,11 +93,14 @@ Expected<nlohmann::json> parse_json(std::string_view text, const std::string& wh
     if (text.size() > kTextFileLimit)
         return input_error(Text("the JSON is longer than {} MiB", kTextFileLimit >> 20), where);
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    if (is_utf16(text)) return input_error("the text is UTF-16", where, "save it as UTF-8 or plain ASCII");
     DocumentBuilder builder;
     const bool whole = nlohmann::json::sax_parse(text.begin(), text.end(), &builder);
     if (builder.too_deep) return input_error(Text("the JSON is nested deeper than {}", kDeepestJson), where);
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) builder.syntax = "the text is empty";
-    if (!whole) return input_error(Text("is no JSON ({})", builder.syntax), where);
+    // The library's words quote the bytes it read last.
+    if (!whole)
+        return input_error(Text("is no JSON ({})", shown_text(builder.syntax, builder.syntax.size())), where);
     if (!builder.twice.empty())
         return input_error(Text("the key \"{}\" is given twice in one object", builder.twice), where);
     return std::move(builder.document);

@@ -8,6 +8,7 @@
 
 #include "core/geometry/notation.h"
 #include "devices/exchange/json_fields.h"
+#include "devices/exchange/shown_text.h"
 #include "devices/exchange/written_pose.h"
 
 namespace seamwright {
@@ -63,9 +64,7 @@ Expected<double> leading_number(std::string_view text, const std::string& where)
     if (!text.empty() && text.front() == '+') text.remove_prefix(1);
     const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (text.empty() || problem != std::errc() || end != text.data() + text.size()) {
-        std::string shown;
-        for (char c : text.substr(0, 24)) shown += (c >= 32 && c < 127) ? c : '?';
-        return input_error(Text("\"{}\" is no number", shown), where);
+        return input_error(Text("\"{}\" is no number", shown_text(text, 24)), where);
     }
     return value;
 }

@@ -8,6 +8,7 @@
 
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "devices/exchange/tables/pose_names.h"
 
 namespace seamwright {
 namespace fs = std::filesystem;
@@ -270,10 +271,12 @@ Expected<bool> poses_from_table(const fs::path& folder, const RecordingLayout& l
     for (const RecordedFrame& frame : frames)
         names.push_back(frame.profile && frame.file.stem() != frame.spot_id ? frame.spot_id
                                                                             : frame.file.filename().string());
-    SEAM_TRY(const auto poses, poses_of_frames(table, names, path->string()));
+    SEAM_TRY(const auto found, poses_of_frames(table, names, path->string()));
     for (std::size_t i = 0; i < frames.size(); ++i)
-        if (!frames[i].base_from_flange) frames[i].base_from_flange = poses[i];
-    if (told) told->push_back(path->filename().string() + ": " + table.understood);
+        if (!frames[i].base_from_flange) frames[i].base_from_flange = found.poses[i];
+    if (told)
+        told->push_back(
+            fmt::format("{}: {}, {}", path->filename().string(), table.understood, found.understood));
     return true;
 }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "devices/exchange/shown_text.h"
 
 namespace seamwright {
 namespace csv {
@@ -42,10 +43,7 @@ inline std::string field(std::string_view text) {
 
 // For messages: short and printable, whatever the file holds.
 inline std::string shown(std::string_view field) {
-    std::string s;
-    for (char c : field.substr(0, 24)) s += (c >= 32 && c < 127) ? c : '?';
-    if (field.size() > 24) s += "...";
-    return s;
+    return shown_text(field, 24);
 }
 
 // Lines of a text, '\n' or "\r\n", numbered from 1.
@@ -178,7 +176,7 @@ class CsvTable {
     bool text_is_utf16() {
         csv::Lines copy = lines_;
         std::string_view line;
-        return copy.next(line) && (line.starts_with("\xFF\xFE") || line.starts_with("\xFE\xFF"));
+        return copy.next(line) && is_utf16(line);
     }
     std::string example(std::span<const std::string_view> wanted, std::size_t required) const {
         std::string s;

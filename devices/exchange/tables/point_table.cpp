@@ -154,8 +154,7 @@ bool text_number(std::string_view field, bool decimal_comma, double& value) {
 }
 
 Expected<PointTable> parse_text_points(std::string_view text, const std::string& where, std::size_t limit) {
-    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
-        return input_error("the text is UTF-16", where, "save it as UTF-8 or plain ASCII");
+    if (is_utf16(text)) return input_error("the text is UTF-16", where, "save it as UTF-8 or plain ASCII");
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
         return input_error("the file is empty", where);

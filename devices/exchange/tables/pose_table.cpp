@@ -14,6 +14,7 @@
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "devices/exchange/shown_text.h"
 #include "devices/exchange/tables/csv_table.h"
 #include "devices/exchange/tables/point_table.h"
 #include "devices/exchange/tables/profile_layout.h"
@@ -26,7 +27,7 @@ constexpr double kNearForMillimetres = 100;  // no robot measures with its flang
 constexpr std::size_t kPoseLimit = 1'000'000;
 
 struct PoseRow {
-    std::string name, at;
+    std::string at;
     std::vector<double> numbers;
 };
 
@@ -37,7 +38,8 @@ struct PoseForm {
     double rad = 0;  // of a unit of angle; 0: not known
 };
 
-bool is_name_column(const std::string& n) {
+// Titles that bind: numbers below them too are names, or the table is refused. Other columns show by their cells.
+bool says_that_it_names(const std::string& n) {
     for (const char* known : {"name", "file", "filename", "spot", "spotid", "id", "point", "profile", "frame",
                               "label", "image", "pose", "no", "nr", "index", "number"})
         if (n == known) return true;
@@ -157,34 +159,43 @@ Expected<void> check_width(PoseForm& form, std::size_t width, const std::string&
     return {};
 }
 
-// What a header says: which column is the name, and which are the numbers in the order of the convention.
+// What a header says: which columns are the numbers, in the order of the convention, and which may be names.
 struct PoseHeader {
-    std::optional<std::size_t> name;
-    std::vector<std::size_t> numbers;
+    std::vector<std::size_t> numbers, names;
 };
 
 Expected<PoseHeader> read_header(const std::vector<std::string_view>& fields, PoseForm& form,
                                  const std::string& at) {
-    std::map<std::string, std::size_t> columns;
+    std::multimap<std::string, std::size_t> columns;
     PoseHeader header;
     std::string length_unit, angle_unit;
     std::vector<ColumnName> names;
     for (std::size_t c = 0; c < fields.size(); ++c) {
         names.push_back(column_name(fields[c]));
-        if (!header.name && is_name_column(names[c].name))
-            header.name = c;
-        else
-            columns.emplace(names[c].name, c);
+        columns.emplace(names[c].name, c);
     }
     static const std::pair<const char*, std::vector<const char*>> rotations[] = {
         {"kuka-abc", {"a", "b", "c"}},           {"fanuc-wpr", {"w", "p", "r"}},
         {"rpy", {"roll", "pitch", "yaw"}},       {"quat-wxyz", {"qw", "qx", "qy", "qz"}},
         {"quat-wxyz", {"q1", "q2", "q3", "q4"}}, {"", {"rx", "ry", "rz"}}};
+    // Of two columns of one title (a point "P" before W, P and R) that which goes on from the one before.
+    std::string twice;
     const auto take = [&](const std::vector<const char*>& wanted) {
         std::vector<std::size_t> found;
-        for (const char* name : wanted)
-            if (const auto it = columns.find(name); it != columns.end()) found.push_back(it->second);
-        return found.size() == wanted.size() ? found : std::vector<std::size_t>{};
+        std::string_view again;
+        for (const char* name : wanted) {
+            const auto [first, last] = columns.equal_range(name);
+            if (first == last) return std::vector<std::size_t>{};
+            const std::size_t before = !found.empty()           ? found.back()
+                                       : header.numbers.empty() ? fields.size()
+                                                                : header.numbers.back();
+            const auto next =
+                std::find_if(first, last, [&](const auto& c) { return c.second == before + 1; });
+            if (std::next(first) != last && next == last) again = fields[first->second];
+            found.push_back(next != last ? next->second : first->second);
+        }
+        if (!again.empty()) twice = again;
+        return found;
     };
     header.numbers = take({"x", "y", "z"});
     if (header.numbers.empty())
@@ -203,6 +214,12 @@ Expected<PoseHeader> read_header(const std::vector<std::string_view>& fields, Po
         if (form.convention.empty()) form.convention = convention;
         break;
     }
+    if (!twice.empty())
+        return input_error(Text("the header names \"{}\" twice", csv::shown(twice)), at,
+                           "give every column a title of its own");
+    for (std::size_t c = 0; c < fields.size(); ++c)
+        if (std::find(header.numbers.begin(), header.numbers.end(), c) == header.numbers.end())
+            header.names.push_back(c);
     if (header.numbers.size() == 3)
         return input_error("the header names no rotation that is known", at,
                            "name it a,b,c or w,p,r or roll,pitch,yaw or qw,qx,qy,qz or rx,ry,rz");
@@ -227,16 +244,18 @@ char separator_of(std::string_view text) {
 Expected<PoseTable> from_json(std::string_view text, const std::string& where) {
     SEAM_TRY(const auto json, parse_json(text, where));
     PoseTable table;
-    table.understood = "JSON poses";
+    table.understood = fmt::format("{} JSON poses", json.size());
     if (json.is_array()) {
         for (std::size_t i = 0; i < json.size(); ++i) {
             SEAM_TRY(auto pose, parse_pose(json[i], json_path(where, i)));
-            table.poses.push_back({"", pose, json_path(where, i)});
+            table.poses.push_back({pose, json_path(where, i)});
         }
     } else if (json.is_object()) {
+        table.names.push_back({PoseNames::Says::names, "", {}});
         for (const auto& [name, value] : json.items()) {
             SEAM_TRY(auto pose, parse_pose(value, where + ": " + csv::shown(name)));
-            table.poses.push_back({name, pose, where + ": " + csv::shown(name)});
+            table.poses.push_back({pose, where + ": " + csv::shown(name)});
+            table.names.front().cells.push_back(name);
         }
     }
     if (table.poses.empty())
@@ -248,7 +267,7 @@ Expected<PoseTable> from_json(std::string_view text, const std::string& where) {
 
 Expected<PoseTable> parse_fanuc_ls(std::string_view text, const std::string& where) {
     PoseTable table;
-    table.names_bind = false;
+    table.names.push_back({PoseNames::Says::remarks, "", {}});
     const auto positions = text.find("/POS");
     if (positions == std::string_view::npos) return input_error("the program has no /POS", where);
     std::size_t line = 1 + static_cast<std::size_t>(std::count(
@@ -260,14 +279,15 @@ Expected<PoseTable> parse_fanuc_ls(std::string_view text, const std::string& whe
             std::count(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
         rest.remove_prefix(at);
         const auto close = rest.find(']'), open = rest.find('{'), end = rest.find('}');
-        NamedPose pose;
+        TablePose pose;
         pose.at = fmt::format("{}, line {}", where, line);
         if (close == rest.npos || open == rest.npos || end == rest.npos || close > open || open > end)
             return input_error("the position does not end", pose.at, "the file is cut short");
         const std::string_view label = rest.substr(2, close - 2),
                                body = rest.substr(open + 1, end - open - 1);
         const auto colon = label.find(':');
-        pose.name = csv::trimmed(colon == label.npos ? label : label.substr(colon + 1));
+        table.names.front().cells.emplace_back(
+            csv::trimmed(colon == label.npos ? label : label.substr(colon + 1)));
         const auto after = [&](std::string_view key, char sign) -> std::optional<std::string_view> {
             for (std::size_t from = 0; (from = body.find(key, from)) != body.npos; from += key.size()) {
                 const bool starts =
@@ -298,7 +318,7 @@ Expected<PoseTable> parse_fanuc_ls(std::string_view text, const std::string& whe
                                "give poses of one user frame and one tool");
         frames = here;
         PoseForm form{"fanuc-wpr", 1, kPi / 180};
-        SEAM_TRY(auto read, pose_of(form, {pose.name, pose.at, {values.begin(), values.end()}}));
+        SEAM_TRY(auto read, pose_of(form, {pose.at, {values.begin(), values.end()}}));
         pose.pose = read;
         table.poses.push_back(std::move(pose));
         line += static_cast<std::size_t>(
@@ -308,17 +328,16 @@ Expected<PoseTable> parse_fanuc_ls(std::string_view text, const std::string& whe
     }
     if (table.poses.empty()) return input_error("there are no positions behind /POS", where);
     table.understood = fmt::format(
-        "FANUC positions in {} (taken as the flange in the robot's base: a tool or user frame that is not "
+        "{} FANUC positions in {} (taken as the flange in the robot's base: a tool or user frame that is not "
         "zero "
         "must be undone first)",
-        frames);
+        table.poses.size(), frames);
     return table;
 }
 
 Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& where,
                                      const PoseLayout& layout) {
-    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
-        return input_error("the text is UTF-16", where, "save it as UTF-8 or plain ASCII");
+    if (is_utf16(text)) return input_error("the text is UTF-16", where, "save it as UTF-8 or plain ASCII");
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     PoseForm form{layout.convention, 0, 0};
     if (!layout.convention.empty() && std::find(std::begin(kPoseConventions), std::end(kPoseConventions),
@@ -344,6 +363,7 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
     const char separator = separator_of(text);
     const bool decimal_comma = separator != ',' && text.find(',') != text.npos && text.find('.') == text.npos;
     std::vector<PoseRow> rows;
+    PoseTable table;
     std::optional<PoseHeader> header;
     std::size_t width = 0;
     csv::Lines lines(text);
@@ -367,6 +387,12 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
             if (read) {
                 header = std::move(*read);
                 width = fields.size();
+                for (const std::size_t c : header->names)
+                    table.names.push_back({says_that_it_names(column_name(fields[c]).name)
+                                               ? PoseNames::Says::names
+                                               : PoseNames::Says::nothing,
+                                           std::string(fields[c]),
+                                           {}});
             } else if (!comment) {
                 return tl::unexpected(read.error());
             }
@@ -381,14 +407,18 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
         std::vector<std::size_t> order;
         if (header) {
             order = header->numbers;
-            if (header->name) row.name = fields[*header->name];
+            for (std::size_t i = 0; i < header->names.size(); ++i)
+                table.names[i].cells.emplace_back(fields[header->names[i]]);
         } else {
             double ignored = 0;
             const bool odd = width == 7 && layout.convention != "quat-wxyz" &&
                              layout.convention != "quat-xyzw" && !layout.convention.empty();
-            const bool named = !text_number(fields[0], decimal_comma, ignored) || odd || width == 8 ||
-                               width == 13 || width == 17;
-            if (named) row.name = fields[0];
+            // The first row decides: in all of them the same columns are the numbers.
+            if (rows.empty() && (!text_number(fields[0], decimal_comma, ignored) || odd || width == 8 ||
+                                 width == 13 || width == 17))
+                table.names.push_back({PoseNames::Says::names, "", {}});
+            const bool named = !table.names.empty();
+            if (named) table.names.front().cells.emplace_back(fields[0]);
             for (std::size_t i = named ? 1 : 0; i < width; ++i) order.push_back(i);
         }
         for (const std::size_t i : order) {
@@ -407,7 +437,7 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
         std::vector<PoseRow> stacked;
         for (std::size_t i = 0; i < rows.size(); ++i) {
             if (rows[i].numbers.size() != 4) return input_error("is no row of a 4x4 matrix", rows[i].at);
-            if (i % 4 == 0) stacked.push_back({"", rows[i].at, {}});
+            if (i % 4 == 0) stacked.push_back({rows[i].at, {}});
             stacked.back().numbers.insert(stacked.back().numbers.end(), rows[i].numbers.begin(),
                                           rows[i].numbers.end());
         }
@@ -415,16 +445,19 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
     }
     SEAM_OK(check_width(form, rows.front().numbers.size(), rows.front().at));
     SEAM_OK(settle_units(form, rows, where));
-    PoseTable table;
-    std::set<std::string> names;
     for (const PoseRow& row : rows) {
         SEAM_TRY(auto pose, pose_of(form, row));
-        if (!row.name.empty() && !names.insert(row.name).second)
-            return input_error(Text("the pose \"{}\" is given twice", csv::shown(row.name)), row.at);
-        table.poses.push_back({row.name, pose, row.at});
+        table.poses.push_back({pose, row.at});
     }
-    table.understood = fmt::format("{} poses by {}, {}, {} mm a unit", table.poses.size(),
-                                   names.empty() ? "order" : "name", form.convention, form.mm);
+    if (table.names.size() == 1 && table.names.front().says == PoseNames::Says::names) {
+        std::set<std::string> given;
+        const auto& cells = table.names.front().cells;
+        for (std::size_t i = 0; i < cells.size(); ++i)
+            if (!cells[i].empty() && !given.insert(cells[i]).second)
+                return input_error(Text("the pose \"{}\" is given twice", csv::shown(cells[i])), rows[i].at);
+    }
+    table.understood =
+        fmt::format("{} poses, {}, {} mm a unit", table.poses.size(), form.convention, form.mm);
     return table;
 }
 
@@ -452,45 +485,6 @@ Expected<Pose> read_frame_pose(const std::filesystem::path& path, const PoseLayo
     if (table.poses.size() != 1)
         return input_error(Text("holds {} poses beside one frame", table.poses.size()), path.string());
     return table.poses.front().pose;
-}
-
-Expected<std::vector<Pose>> poses_of_frames(const PoseTable& table, std::span<const std::string> frames,
-                                            const std::string& where) {
-    const bool named =
-        std::any_of(table.poses.begin(), table.poses.end(), [](const auto& p) { return !p.name.empty(); });
-    const auto ending_number = [](std::string_view s) -> std::optional<long> {
-        std::size_t from = s.size();
-        while (from > 0 && std::isdigit(static_cast<unsigned char>(s[from - 1]))) --from;
-        if (from == s.size() || s.size() - from > 9) return std::nullopt;
-        return std::stol(std::string(s.substr(from)));
-    };
-    std::vector<Pose> poses;
-    std::string missing;
-    for (const std::string& frame : frames) {
-        const std::string stem = std::filesystem::path(frame).stem().string();
-        const NamedPose* found = nullptr;
-        for (const NamedPose& pose : table.poses)
-            if (!pose.name.empty() && (pose.name == frame || pose.name == stem)) found = &pose;
-        for (const NamedPose& pose : table.poses) {  // "7" of frame0007
-            const bool number =
-                !pose.name.empty() && pose.name.find_first_not_of("0123456789") == std::string::npos;
-            if (!found && number && ending_number(pose.name) == ending_number(stem)) found = &pose;
-        }
-        if (found)
-            poses.push_back(found->pose);
-        else if (missing.empty())
-            missing = frame;
-    }
-    if (named && missing.empty()) return poses;
-    if (named && table.names_bind)
-        return input_error(Text("names no pose of {}", missing), where,
-                           "name the poses as the frames' files, or leave the names out");
-    if (table.poses.size() != frames.size())
-        return input_error(Text("holds {} poses for {} frames", table.poses.size(), frames.size()), where,
-                           "give one pose a frame in the frames' order, or name them as the files");
-    poses.clear();
-    for (const NamedPose& pose : table.poses) poses.push_back(pose.pose);
-    return poses;
 }
 
 }  // namespace seamwright

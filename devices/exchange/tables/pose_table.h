@@ -33,14 +33,22 @@ struct PoseLayout {
     bool operator==(const PoseLayout&) const = default;
 };
 
-struct NamedPose {
-    std::string name;  // empty: by order
+struct TablePose {
     Pose pose;
     std::string at;  // "poses.csv, line 4"
 };
+// What may name the poses (pose_names.h): every column of a table that holds none of a pose's numbers.
+struct PoseNames {
+    // By its title or its form it names the poses; it may; or these are remarks, and the order counts where they
+    // fit no frame (FANUC LS).
+    enum class Says { names, nothing, remarks };
+    Says says = Says::nothing;
+    std::string title;               // as the header writes it; empty: a form without titles
+    std::vector<std::string> cells;  // one a pose; empty: nothing stands there
+};
 struct PoseTable {
-    std::vector<NamedPose> poses;
-    bool names_bind = true;  // false: names are remarks, the order counts where they fit no frame (FANUC LS)
+    std::vector<TablePose> poses;
+    std::vector<PoseNames> names;
     std::string understood;
 };
 
@@ -57,11 +65,5 @@ Expected<PoseTable> parse_fanuc_ls(std::string_view text, const std::string& whe
 // The pose file of one frame: as read_pose_file() (pose_json.h) where its form says all by itself, else a
 // text with one pose as above.
 Expected<Pose> read_frame_pose(const std::filesystem::path& path, const PoseLayout& layout);
-
-// Which pose belongs to each frame (file name, or its stem, or the number it ends in, equal to the pose's
-// name); without names by order, and then there must be as many of both. Error (input): names the frame
-// without a pose.
-Expected<std::vector<Pose>> poses_of_frames(const PoseTable& table, std::span<const std::string> frames,
-                                            const std::string& where);
 
 }  // namespace seamwright

@@ -18,6 +18,7 @@ namespace seamwright {
 namespace {
 
 constexpr double kFarthestPoint_mm = 1e6;
+constexpr std::size_t kTitle = 60;  // signs of one that is shown to be copied
 
 bool is_one_of(const std::string& name, std::initializer_list<const char*> known) {
     return std::find(known.begin(), known.end(), name) != known.end();
@@ -62,6 +63,19 @@ struct PointRoles {
     std::optional<std::size_t> x, y, z, profile, intensity;
 };
 
+// But for capitals, blanks and the unit. column_name() knows letters of ASCII only; of others, none may differ.
+bool alike(std::string_view title, std::string_view word) {
+    const auto others = [](std::string_view text) {
+        std::string kept;
+        for (const char c : text)
+            if (static_cast<unsigned char>(c) >= 0x80) kept += c;
+        return kept;
+    };
+    const std::string name = column_name(word).name, beyond_ascii = others(word);
+    return (!name.empty() || !beyond_ascii.empty()) && column_name(title).name == name &&
+           others(title).starts_with(beyond_ascii);
+}
+
 Expected<std::size_t> column_called(const PointTable& table, std::string_view word,
                                     const std::string& where) {
     word = csv::trimmed(word);
@@ -70,9 +84,12 @@ Expected<std::size_t> column_called(const PointTable& table, std::string_view wo
         number <= static_cast<double>(table.columns.size()) && number == std::floor(number))
         return static_cast<std::size_t>(number) - 1;
     for (std::size_t c = 0; c < table.names.size(); ++c)
-        if (table.names[c] == word || column_name(table.names[c]).name == column_name(word).name) return c;
+        if (table.names[c] == word) return c;
+    for (std::size_t c = 0; c < table.names.size(); ++c)
+        if (alike(table.names[c], word)) return c;
     std::string there;
-    for (const std::string& name : table.names) there += (there.empty() ? "" : ", ") + csv::shown(name);
+    for (const std::string& name : table.names)
+        there += (there.empty() ? "" : ", ") + shown_text(name, kTitle);
     return input_error(Text("there is no column \"{}\"", csv::shown(word)), where,
                        there.empty() ? Text("the columns are 1 to {}", table.columns.size())
                                      : Text("the columns are {}", there));
@@ -80,7 +97,7 @@ Expected<std::size_t> column_called(const PointTable& table, std::string_view wo
 
 std::string named_columns(const PointTable& table) {
     std::string text;
-    for (const std::string& name : table.names) text += (text.empty() ? "" : ", ") + csv::shown(name);
+    for (const std::string& name : table.names) text += (text.empty() ? "" : ", ") + shown_text(name, kTitle);
     return text;
 }
 

@@ -149,5 +149,17 @@ TEST(PoseFile, RealPosesRead) {
     EXPECT_GE(count, 39);
 }
 
+TEST(Json, Utf16IsNamedAndNoByteOfAFileBreaksTheSentence) {
+    for (const std::string& text :
+         {std::string("\xFF\xFE{\0}\0", 6), std::string("\xFE\xFF\0{\0}", 6), std::string("{\0}\0", 4)}) {
+        const auto parsed = parse_json(text, "job.json");
+        ASSERT_FALSE(parsed);
+        EXPECT_THAT(parsed.error().sentence(), HasSubstr("UTF-16"));
+    }
+    const auto parsed = parse_json("{\"a\": \xFF\xFF}", "job.json");
+    ASSERT_FALSE(parsed);
+    EXPECT_EQ(parsed.error().sentence().find('\xFF'), std::string::npos);
+}
+
 }  // namespace
 }  // namespace seamwright

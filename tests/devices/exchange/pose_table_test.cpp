@@ -1,7 +1,10 @@
 #include "devices/exchange/tables/pose_table.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "devices/exchange/tables/pose_names.h"
 
 namespace seamwright {
 namespace {
@@ -98,23 +101,104 @@ TEST(PoseTable, HostileTables) {
     expect_no_poses(std::string("\xFF\xFEx\0", 4), "UTF-16");
 }
 
+using Frames = std::vector<std::string>;
+const std::string kSecondRow = "820,10,610,-30,0,0", kFirstRow = "800,-50,600,90,0,0";
+
+// Both poses, the second before the first, as `first_frame` and the other take them.
+void expect_named(const std::string& text, const Frames& frames, const std::string& words,
+                  const PoseLayout& layout = {}) {
+    const auto table = parse_pose_table(text, "t", layout);
+    ASSERT_TRUE(table) << table.error().sentence() << "\n" << text;
+    const auto found = poses_of_frames(*table, frames, "t");
+    ASSERT_TRUE(found) << found.error().sentence() << "\n" << text;
+    EXPECT_TRUE(found->poses[0].isApprox(kFirst, 1e-6)) << text << found->understood;
+    EXPECT_TRUE(found->poses[1].isApprox(kSecond, 1e-6)) << text << found->understood;
+    EXPECT_THAT(found->understood, HasSubstr(words)) << text;
+}
+void expect_unnamed(const std::string& text, const Frames& frames, const std::string& words,
+                    const PoseLayout& layout = {}) {
+    const auto table = parse_pose_table(text, "t", layout);
+    ASSERT_TRUE(table) << table.error().sentence() << "\n" << text;
+    const auto found = poses_of_frames(*table, frames, "t");
+    ASSERT_FALSE(found) << found->understood << "\n" << text;
+    EXPECT_THAT(found.error().sentence(), HasSubstr(words)) << text;
+}
+
 TEST(PoseTable, PosesFindTheirFrames) {
-    const auto named =
-        parse_pose_table("name,x,y,z,a,b,c\nS2,820,10,610,-30,0,0\nS1.csv,800,-50,600,90,0,0\n", "t", {});
-    const std::vector<std::string> frames{"S1.csv", "S2.csv"};
-    const auto poses = poses_of_frames(*named, frames, "t");
-    ASSERT_TRUE(poses) << poses.error().sentence();
-    EXPECT_TRUE((*poses)[0].isApprox(kFirst, 1e-6));
-    const std::vector<std::string> more{"S1.csv", "S2.csv", "S3.csv"};
-    EXPECT_THAT(poses_of_frames(*named, more, "t").error().sentence(), HasSubstr("S3.csv"));
-    const auto numbered =
-        parse_pose_table("no,x,y,z,a,b,c\n2,820,10,610,-30,0,0\n1,800,-50,600,90,0,0\n", "t", {});
-    const std::vector<std::string> scans{"scan_0001.txt", "scan_0002.txt"};
-    EXPECT_TRUE((*poses_of_frames(*numbered, scans, "t"))[0].isApprox(kFirst, 1e-6));
-    const auto ordered =
-        parse_pose_table("800 -50 600 90 0 0\n820 10 610 -30 0 0\n", "t", {"kuka-abc", "", ""});
-    EXPECT_TRUE((*poses_of_frames(*ordered, frames, "t"))[1].isApprox(kSecond, 1e-6));
-    EXPECT_THAT(poses_of_frames(*ordered, more, "t").error().sentence(), HasSubstr("2 poses for 3 frames"));
+    const std::string named = "name,x,y,z,a,b,c\nS2," + kSecondRow + "\nS1.csv," + kFirstRow + "\n";
+    expect_named(named, {"S1.csv", "S2.csv"}, "by the names in the column \"name\"");
+    expect_unnamed(named, {"S1.csv", "S2.csv", "S3.csv"}, "S3.csv");
+    expect_named("no,x,y,z,a,b,c\n2," + kSecondRow + "\n1," + kFirstRow + "\n",
+                 {"scan_0001.txt", "scan_0002.txt"}, "\"no\"");
+    const std::string bare = "800 -50 600 90 0 0\n820 10 610 -30 0 0\n";
+    const PoseLayout kuka{"kuka-abc", "", ""};
+    expect_named(bare, {"S1.csv", "S2.csv"}, "BY ORDER", kuka);
+    expect_named(bare, {"S1.csv", "S2.csv"}, "S2.csv takes t, line 2", kuka);
+    expect_unnamed(bare, {"S1.csv", "S2.csv", "S3.csv"}, "2 poses for 3 frames", kuka);
+    expect_named("S2 820 10 610 -30 0 0\nS1 800 -50 600 90 0 0\n", {"S1.csv", "S2.csv"}, "by name", kuka);
+    expect_named(
+        "{\"S2\":{\"xyz\":[820,10,610],\"abc\":[-30,0,0]},\"S1\":{\"xyz\":[800,-50,600],\"abc\":[90,0,0]}}",
+        {"S1.csv", "S2.csv"}, "by name");
+}
+
+TEST(PoseTable, AColumnOfTheFramesNamesNamesThePosesWhateverItsTitle) {
+    for (const char* title :
+         {"Punkt", "Messstelle", "Nummer", "Naht", "Bezeichnung", "Stelle", "Spot-ID", "Pose-Name",
+          "position", "Point name", "\xE7\x82\xB9", "target", "P", "A", ""}) {
+        const std::string first = fmt::format("{},x,y,z,a,b,c\n", title);
+        const std::string rows = fmt::format("S4,{}\nS2,{}\n", kSecondRow, kFirstRow);
+        expect_named(first + rows, {"S2.csv", "S4.csv"}, title);
+        // last, and beside columns that name nothing
+        const std::string last = fmt::format("x,y,z,a,b,c,E1,Werkzeug,{0}\n{1},0,T1,S4\n{2},0,T1,S2\n", title,
+                                             kSecondRow, kFirstRow);
+        if (*title) expect_named(last, {"S2.csv", "S4.csv"}, title);
+    }
+    // A point "P" before W, P and R.
+    expect_named("P,x,y,z,w,p,r\n2,820,10,610,0,0,-30\n1,800,-50,600,0,0,90\n", {"S1.csv", "S2.csv"},
+                 "\"P\"");
+    // Numbers that are the numbers asked for, as those of the profiles of one file.
+    expect_named("Nummer,x,y,z,a,b,c\n8," + kSecondRow + "\n5," + kFirstRow + "\n", {"5", "8"}, "\"Nummer\"");
+    // Names in capitals, with blanks, folders and other extensions.
+    for (const char* as : {"s1.CSV", " S1 ", "S1.csv", "S1.png", "S 1", "C:\\scans\\S1.csv", "scans/s1"})
+        expect_named(fmt::format("Punkt;x;y;z;a;b;c\nS2;820;10;610;-30;0;0\n{};800;-50;600;90;0;0\n", as),
+                     {"S1.csv", "S2.csv"}, "Punkt");
+    // A running number does not outvote names.
+    expect_named("Nr,Punkt,x,y,z,a,b,c\n1,S2," + kSecondRow + "\n2,S1," + kFirstRow + "\n",
+                 {"S1.csv", "S2.csv"}, "Punkt");
+    // A point's title says that it names: what came before it does not decide.
+    expect_named("from,name,x,y,z,a,b,c\nS1,S2," + kSecondRow + "\nS2,S1," + kFirstRow + "\n",
+                 {"S1.csv", "S2.csv"}, "\"name\"");
+}
+
+TEST(PoseTable, NamesThatDoNotFitAreNotTakenForTheOrder) {
+    const auto table = [](const std::string& title, const std::string& one, const std::string& other) {
+        return fmt::format("{},x,y,z,a,b,c\n{},{}\n{},{}\n", title, one, kSecondRow, other, kFirstRow);
+    };
+    const Frames frames{"S1.csv", "S2.csv"};
+    expect_unnamed(table("Punkt", "S2", "S7"), frames, "\"Punkt\" names no pose of S1.csv");
+    expect_unnamed(table("Punkt", "S2", "S2"), frames, "twice");
+    expect_unnamed(table("Punkt", "left", "right"), frames, "\"Punkt\" names no pose of S1.csv");
+    expect_unnamed(table("Punkt", "S2", ""), frames, "\"Punkt\" names no pose of S1.csv");
+    expect_unnamed(table("Nummer", "2", "3"), frames, "\"Nummer\" names no pose of S1.csv");
+    expect_unnamed(table("A1,B1", "S1,S2", "S2,S1"), frames, "\"A1\" and \"B1\" name the poses differently");
+    expect_unnamed(table("Nr,Punkt", "1,S2", "2,S7"), frames, "name the poses differently");
+    // What names nothing: a speed, a time, a tool for all, a column that is mostly empty.
+    for (const auto& [one, other] : {std::pair{"250", "300"},
+                                     {"0.5", "1.5"},
+                                     {"T1", "T1"},
+                                     {"", "noch einmal"},
+                                     {"14:03:11", "14:03:19"},
+                                     {"2026-11-28T14:03:11Z", "2026-11-28T14:03:19Z"}}) {
+        const Frames turned{"S2.csv", "S1.csv"};
+        const auto read = parse_pose_table(table("v", one, other), "t", {});
+        ASSERT_TRUE(read) << read.error().sentence();
+        const auto found = poses_of_frames(*read, turned, "t");
+        ASSERT_TRUE(found) << one << found.error().sentence();
+        EXPECT_TRUE(found->poses[0].isApprox(kSecond, 1e-6)) << one;
+        EXPECT_THAT(found->understood, HasSubstr("BY ORDER")) << one;
+    }
+    expect_no_poses("x,x,y,z,a,b,c\n1,2,3,4,5,6,7\n", "\"x\" twice");
+    expect_no_poses("800 -50 600 1 0 0 0\nS2 -50 600 1 0 0 0\n", "line 2", {"quat-wxyz", "", ""});
 }
 
 }  // namespace

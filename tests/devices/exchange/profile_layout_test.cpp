@@ -266,5 +266,24 @@ TEST(ProfileLayout, HeightsThatStandForNoReturnAreNone) {
         EXPECT_FALSE(parse_profiles(text, "scan.csv", layout));
 }
 
+// A title is copied from the sentence to --columns-xz.
+TEST(ProfileLayout, TitlesOfOtherScriptsAreShownAsTheyAreAndFound) {
+    const std::string text =
+        "\xE6\xA8\xAA(mm),\xE5\xB9\x85(mm),\xE9\xAB\x98\xE3\x81\x95(mm)\n-1.5,7.0,3.5\n-0.5,7.0,3.6\n0.5,7.1,"
+        "3.7\n";
+    const std::string x = "\xE6\xA8\xAA(mm)", z = "\xE9\xAB\x98\xE3\x81\x95(mm)";
+    expect_no_profile(text, x);
+    expect_no_profile(text, z);
+    for (const std::string& columns : {x + "," + z, std::string("\xE6\xA8\xAA,\xE9\xAB\x98\xE3\x81\x95")}) {
+        const auto read = parse_profiles(text, "in.dat", {"", columns, {}});
+        ASSERT_TRUE(read) << read.error().sentence();
+        EXPECT_DOUBLE_EQ(read->profiles[0].profile.z_mm[1], 3.6);
+    }
+    expect_no_profile(text, "there is no column",
+                      {"", x + ",\xE6\xB7\xB1", {}});  // a sign that is in no title
+    expect_no_profile("\x89\xA1(mm),\x8D\x82(mm)\n1.5,2.5\n2.5,2.5\n3.5,2.5\n", "??(mm)",
+                      {"", "nowhere,1", {}});
+}
+
 }  // namespace
 }  // namespace seamwright

@@ -49,7 +49,7 @@ std::string path_words(const ScanArguments& a) {
 Expected<ScanResult> scanned_by_devices(ScanArguments& a) {
     if (!a.path.empty()) {
         SEAM_TRY(const auto table, read_pose_table(a.path, a.layout));
-        for (const NamedPose& p : table.poses) a.driven.stands.push_back(p.pose);
+        for (const TablePose& p : table.poses) a.driven.stands.push_back(p.pose);
     }
     SEAM_TRY(auto station, open_station(a.file));
     if (a.recorded.robot_id.empty() && station.project().robots.size() == 1)

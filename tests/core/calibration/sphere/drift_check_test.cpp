@@ -105,7 +105,7 @@ TEST(DriftCheck, OnePlaceCannotSeeATurnAndSaysSo) {
 // Whatever the turn, "holds" may not be said beyond the limits: over sizes about the limit and measurements
 // from fine to rough.
 TEST(DriftCheck, HoldsIsSaidOfNothingThatIsBeyondTheLimits) {
-    const DriftLimits limits;
+    const DriftLimits limits{0.1, 0.2};
     int drifted = 0, undetermined = 0;
     for (unsigned seed = 0; seed < 120; ++seed) {
         Random random(seed + 400);

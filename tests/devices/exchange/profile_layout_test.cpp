@@ -281,7 +281,9 @@ TEST(ProfileLayout, TitlesOfOtherScriptsAreShownAsTheyAreAndFound) {
     }
     expect_no_profile(text, "there is no column",
                       {"", x + ",\xE6\xB7\xB1", {}});  // a sign that is in no title
-    expect_no_profile("\x89\xA1(mm),\x8D\x82(mm)\n1.5,2.5\n2.5,2.5\n3.5,2.5\n", "?" "?(mm)",
+    expect_no_profile("\x89\xA1(mm),\x8D\x82(mm)\n1.5,2.5\n2.5,2.5\n3.5,2.5\n",
+                      "?"
+                      "?(mm)",
                       {"", "nowhere,1", {}});
 }
 

@@ -29,8 +29,8 @@
 // mean over more than seven), are so many lines.
 //
 // The lines of one sensor are evenly apart. Merged ones of two heads (double_head.h) are not, in one piece their order is
-// that of x, and the heads see the faces of the gap: there nothing is steep and nothing missing, and the parts are the
-// pieces with most points.
+// that of x, and the heads see the faces of the gap: there the sheets are told by where the points lie (gap_heads.h), and a
+// part is walked along what hangs on its sheet.
 //
 // Frame and unit: as the profile, mm. Noise model: sigma across, from the second differences of each part's
 // surface.
@@ -93,7 +93,6 @@ class GapSides {
     bool goes_on(const Sheet& a, const Sheet& b) const;
     void divide();
     bool lower(const Sheet& b, const Sheet& a) const;
-    Found two_pieces(int least, Core& before, Core& after) const;
     Found two_cores(int least, double panel_mm, Core& before, Core& after);
     int break_between(const Core& before, const Core& after) const;
     double noise_of(int first, int last) const;

@@ -19,8 +19,8 @@ constexpr double kWideInMetres = 3,
 constexpr double kWideInInches = 6, kCloseInInches = 0.02;  // mm: up to 6 in (or m) at 0.02 of it a point
 constexpr double kNarrowInMicrometres = 50, kFarInMicrometres = 5, kNoisyInMicrometres = 2;  // mm
 constexpr double kMmPerInch = 25.4;
-constexpr double kRoundTo = 1e-3, kRoundShare = 1e-2;  // the former of the latter's share of three digits
-constexpr double kEven = 1e-4;                         // of the pitch: steps of one grid
+constexpr double kRound = 1e-5, kRoundOfGrid = 1e-6;  // of the value
+constexpr double kEven = 1e-4;                        // of the pitch: steps of one grid
 constexpr std::size_t kLeastPoints = 10;
 constexpr const char* kMend = "give x and z in millimetres";
 
@@ -39,20 +39,26 @@ Expected<void> check_span_millimetres(double span_mm, const Text& where) {
 namespace {
 
 // At most three digits that count.
-bool is_round(double value) {
+bool is_round(double value, double share) {
     const double scaled = value / std::pow(10, std::floor(std::log10(value)) - 2);
-    return std::abs(scaled - std::round(scaled)) < kRoundTo * std::max(kRoundShare, kRoundShare * scaled);
+    return std::abs(scaled - std::round(scaled)) < share * scaled;
 }
 
-// A grid in x that was round in millimetres before somebody divided by 25.4.
+// A grid in x that was round in millimetres before somebody divided by 25.4. Of grids as they come, such as 80 mm over 639
+// steps, one in seventy is nearly round in inches: so the pitch is that of the whole grid, which its rounding leaves exact.
 bool inch_grid(const std::vector<double>& x_steps) {
     std::vector<double> sorted = x_steps;
     const double pitch = std::abs(median(sorted));
     if (!(pitch > 0)) return false;
     const auto even = std::count_if(x_steps.begin(), x_steps.end(),
                                     [&](double s) { return std::abs(std::abs(s) - pitch) < kEven * pitch; });
-    return 10 * static_cast<std::size_t>(even) > 9 * x_steps.size() && !is_round(pitch) &&
-           is_round(pitch * kMmPerInch);
+    if (10 * static_cast<std::size_t>(even) <= 9 * x_steps.size() || is_round(pitch, kRound)) return false;
+    double span = 0, steps = 0;
+    for (const double s : x_steps) {
+        span += std::abs(s);
+        steps += std::round(std::abs(s) / pitch);
+    }
+    return is_round(span / steps * kMmPerInch, kRoundOfGrid + kEven / steps);
 }
 
 void suspect(ProfileScale& s, const std::vector<double>& x_steps) {

@@ -31,6 +31,8 @@ bool is_known_format(const std::string& bytes) {
     return bytes.starts_with("II*");  // TIFF, little-endian
 }
 
+constexpr double kMosaicShare = 0.12;
+
 constexpr std::pair<ImageChannel, std::string_view> kChannels[] = {
     {ImageChannel::grey, "grey"},
     {ImageChannel::red, "red"},
@@ -91,6 +93,37 @@ std::optional<ImageChannel> image_channel(std::string_view word) {
     return std::nullopt;
 }
 
+bool is_colour_mosaic(const StripeImage& image) {
+    const int type = image.bytes_per_pixel() == 2 ? CV_16U : CV_8U;
+    const cv::Size even(image.width / 2 * 2, image.height / 2 * 2);
+    if (image.empty() || even.area() == 0) return false;
+    const cv::Mat pixels(even, type, const_cast<std::byte*>(image.pixels), image.row_bytes);
+    cv::Mat grey;
+    pixels.convertTo(grey, CV_32F);
+    double together = 0, range = 0;
+    std::vector<float> above(static_cast<std::size_t>(even.width / 2), 0.0F);
+    for (int r = 0; r < even.height; r += 2) {
+        const float* upper = grey.ptr<float>(r);
+        const float* lower = grey.ptr<float>(r + 1);
+        float left = 0;
+        for (int c = 0; c < even.width; c += 2) {
+            const auto [least, most] = std::minmax({upper[c], upper[c + 1], lower[c], lower[c + 1]});
+            const float m = upper[c] - upper[c + 1] - lower[c] + lower[c + 1];
+            float& over = above[static_cast<std::size_t>(c / 2)];
+            together += 0.5 * m * (left + over);
+            range += static_cast<double>(most - least) * (most - least);
+            left = over = m;
+        }
+    }
+    return together > kMosaicShare * range;
+}
+
+Text mosaic_warning() {
+    return "raw picture of a colour camera: neighbouring pixels see other colours, and the stripe jumps "
+           "between them; give "
+           "pictures in colour";
+}
+
 Expected<ChannelChoice> choose_channel(const std::filesystem::path& path, int bit_depth) {
     ChannelChoice choice;
     Frame grey, frame;
@@ -103,6 +136,7 @@ Expected<ChannelChoice> choose_channel(const std::filesystem::path& path, int bi
     } catch (const std::exception&) {
         return file_error("is no readable image", path.string(), "give PNG, BMP, TIFF or PGM");
     }
+    choice.mosaic = channels == 1 && is_colour_mosaic(grey.image);
     for (const ImageChannel channel : {ImageChannel::red, ImageChannel::green, ImageChannel::blue}) {
         if (channels == 1) break;
         SEAM_OK(read_image_file(path, frame, bit_depth, channel));

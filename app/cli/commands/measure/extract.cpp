@@ -84,6 +84,7 @@ Expected<Answer> extract(ExtractArguments a) {
             fmt::format("colour is folded to grey; in {} a line goes on over {:.0f} % of the lines, in "
                         "grey over {:.0f} %",
                         to_string(choice.channel), 100 * choice.share, 100 * choice.share_grey));
+    if (choice.mosaic) warnings.push_back(mosaic_warning().english());
     if (lines_with_stripe > 0 && 2 * lines_going_on < lines_with_stripe)
         warnings.push_back(
             "the strongest peaks jump from line to line: they may be no laser stripe (--channel, "

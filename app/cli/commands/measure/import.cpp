@@ -54,6 +54,7 @@ Expected<void> look_at_images(const ImportArguments& a, FolderImport& options, s
                             "in {} over {:.0f} %",
                             100 * choice.share_grey, to_string(choice.channel), 100 * choice.share));
     }
+    if (choice.mosaic) notes.push_back(mosaic_warning());
     if (a.rows) options.peaks.scan = ScanLines::rows;
     if (a.columns) options.peaks.scan = ScanLines::columns;
     if (!a.rows && !a.columns) {
@@ -141,8 +142,10 @@ Expected<Answer> look(const ImportArguments& a) {
                 entry["colour"] = f.channel->colour;
                 entry["channel"] = to_string(f.channel->channel);
                 entry["lines_share"] = f.channel->share;
+                entry["mosaic"] = f.channel->mosaic;
                 answer.text += fmt::format("  the stripe goes on over {:.0f} % of the lines in {}\n",
                                            100 * f.channel->share, to_string(f.channel->channel));
+                if (f.channel->mosaic) answer.text += "  " + mosaic_warning().english() + "\n";
             }
         } else if (f.readable) {
             const ProfileScale& s = f.scale;

@@ -40,9 +40,10 @@ bool is_image(const fs::path& path) {
 }
 
 // Peaks of an image, in mm by the model; without one in pixels, x along the lines.
-Expected<CandidatesTable> of_image(const std::string& path, const TrackArguments& a,
-                                   const SensorModel* model) {
+Expected<CandidatesTable> of_image(const std::string& path, const TrackArguments& a, const SensorModel* model,
+                                   std::vector<std::string>& warnings) {
     SEAM_TRY(const auto choice, choose_channel(path));
+    if (choice.mosaic) warnings.push_back(path + ": " + mosaic_warning().english());
     Frame frame;
     SEAM_OK(read_image_file(path, frame, 0, choice.channel));
     if (model && model->camera.width > 0 &&
@@ -153,10 +154,11 @@ Expected<Answer> track(const TrackArguments& a) {
     Answer answer;
     answer.json = {{"status", "ok"}, {"profiles", json::array()}};
     bool all = true;
+    std::vector<std::string> warnings;
     for (const std::string& file : a.files) {
-        SEAM_TRY(const auto table, is_image(file)
-                                       ? of_image(file, a, calibration ? &*calibration->model : nullptr)
-                                       : read_candidates(file));
+        SEAM_TRY(const auto table,
+                 is_image(file) ? of_image(file, a, calibration ? &*calibration->model : nullptr, warnings)
+                                : read_candidates(file));
         Profile profile;
         SEAM_OK(track_stripe(table.candidates, a.filter, profile));
         SEAM_OK(write(a, file, profile));
@@ -171,6 +173,8 @@ Expected<Answer> track(const TrackArguments& a) {
                 : fmt::format("; on {} lines not the brightest", one["not_the_brightest"].get<int>()));
         answer.json["profiles"].push_back(one);
     }
+    for (const std::string& w : warnings) answer.text += "warning: " + w + "\n";
+    answer.json["warnings"] = warnings;
     if (!all) {
         answer.json["status"] = "no_stripe";
         answer.exit_code = kExitVerdict;

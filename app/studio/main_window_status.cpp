@@ -41,7 +41,7 @@ QString wrapped(const QString& text, const QFontMetrics& font, int width_px) {
 }  // namespace
 
 void MainWindow::make_status() {
-    const auto label = [this](const QString& name, const QString& tip) {
+    const auto label = [](const QString& name, const QString& tip) {
         auto* l = new QLabel;
         l->setObjectName(name);
         l->setToolTip(tip);

@@ -129,6 +129,14 @@ struct RegionSolver::Impl {
         r.rms_mm = weights > 0 ? std::sqrt(weighted / weights) : 0;
     }
 
+    // How far the part slid along the travel of a spot whose contour's course was not taken.
+    double unseen_slide_mm(const SpotObservation& s) const {
+        if (s.curve || s.weights.y() > 0) return 0;
+        const Pose sensor_from_part = (fit.state.pose() * s.workobject_from_sensor).inverse();
+        const Eigen::Vector3d now = sensor_from_part * (s.workobject_from_sensor * s.measured_mm);
+        return std::abs(now.y() - s.reference_mm.y());
+    }
+
     void remarks(std::span<const SpotObservation> spots, Verdict verdict, RegionCorrection& r) {
         std::vector<Text> out;
         for (const SpotResidual& s : r.spots) {
@@ -149,6 +157,18 @@ struct RegionSolver::Impl {
                 "the residuals are {:.1f} times the stated sigma: the part is deformed or sigma is stated "
                 "too small",
                 scatter));
+        if (!out.empty() || !r.consistent || verdict == Verdict::contradictory) {
+            constexpr double kNoticedMm = 1;
+            std::vector<Text> slid;
+            for (const SpotObservation& s : spots)
+                if (const double mm = unseen_slide_mm(s); mm > kNoticedMm)
+                    slid.push_back(Text("{} ({:.1f} mm)", s.id, mm));
+            if (!slid.empty())
+                add(Text(
+                    "the part slid along the travel of {}, where no pass was accepted: an edge that does not "
+                    "run along the travel looks wrong then: align the sensor there and accept its pass",
+                    listed(slid)));
+        }
         for (std::size_t n = 0; n < spots.size(); ++n) {
             constexpr double kBeyondToldMm = 0.5;
             const double beyond = system.beyond_curve_mm(n, fit.state);

@@ -138,9 +138,10 @@ Expected<BeadShape> BeadShape::make(const ElasticModes& modes, std::span<const B
     std::vector<std::pair<Eigen::Vector3d, double>> rows;
     for (std::size_t n = 0; n < spots.size(); ++n) {
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(modes.spots[n].seen);
+        const double factor = modes.noise_factor * modes.spots[n].noise_factor;
         for (int i = 0; i < 3; ++i) {
             if (!(eigen.eigenvalues()[i] > kSeenShare * eigen.eigenvalues()[2])) continue;
-            rows.emplace_back(eigen.eigenvectors().col(i), 1 / eigen.eigenvalues()[i]);
+            rows.emplace_back(eigen.eigenvectors().col(i), factor * factor / eigen.eigenvalues()[i]);
             impl->row_spot.push_back(static_cast<Index>(n));
         }
     }
@@ -160,8 +161,7 @@ Expected<BeadShape> BeadShape::make(const ElasticModes& modes, std::span<const B
         VectorXd noise(count);
         const double times = std::max(1, modes.rows) * mode.variance_mm2;
         for (Index r = 0; r < count; ++r)
-            noise[r] = kOwnNoise * kOwnNoise + modes.noise_factor * modes.noise_factor *
-                                                   rows[static_cast<std::size_t>(r)].second / times;
+            noise[r] = kOwnNoise * kOwnNoise + rows[static_cast<std::size_t>(r)].second / times;
         impl->noise.push_back(noise);
     }
 

@@ -22,12 +22,11 @@ constexpr double kStandsMm = 1e-7;  // an amplitude that changes by less stands
 struct Prior {
     MatrixXd shapes;  // Phi
     VectorXd common, mean, precision;
-    double noise_variance_factor = 1;
 };
 Prior prior_of(const ElasticModes& modes) {
     const auto j = static_cast<Index>(modes.modes.size());
     const auto slots = static_cast<Index>(modes.spots.size());
-    Prior p{MatrixXd(3 * slots, j), VectorXd(3 * slots), VectorXd(j), VectorXd(j), 1};
+    Prior p{MatrixXd(3 * slots, j), VectorXd(3 * slots), VectorXd(j), VectorXd(j)};
     for (Index n = 0; n < slots; ++n)
         p.common.segment<3>(3 * n) = modes.spots[static_cast<std::size_t>(n)].common_mm;
     for (Index k = 0; k < j; ++k) {
@@ -37,8 +36,20 @@ Prior prior_of(const ElasticModes& modes) {
         p.mean[k] = mode.mean_mm;
         p.precision[k] = 1 / mode.variance_mm2;
     }
-    p.noise_variance_factor = std::max(1.0, modes.noise_factor * modes.noise_factor);
     return p;
+}
+
+// The measures with the noise that the learning found, where it is more than stated.
+std::vector<SpotObservation> as_noisy(std::span<const SpotObservation> spots, std::span<const int> slot_of,
+                                      const ElasticModes& modes) {
+    std::vector<SpotObservation> out(spots.begin(), spots.end());
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        const double own = modes.spots[static_cast<std::size_t>(slot_of[n])].noise_factor;
+        const double factor = std::max(1.0, modes.noise_factor * own);
+        out[n].sigma_mm *= factor;
+        if (out[n].covariance_mm2) *out[n].covariance_mm2 *= factor * factor;
+    }
+    return out;
 }
 
 // The measure of a part that is bent by u (work object, as taught), as if it were not; only what the cut tells
@@ -82,8 +93,8 @@ Joint joint_solution(std::span<const SpotObservation> spots, std::span<const int
     out.correction.displacement = from;
     RegionSolver solver;
     for (int round = 0; round < kMostRounds; ++round) {
-        const elastic::ShapeInformation seen = elastic::shape_information(
-            slots, kept_slots, kept, options, out.correction.displacement, all, prior.noise_variance_factor);
+        const elastic::ShapeInformation seen =
+            elastic::shape_information(slots, kept_slots, kept, options, out.correction.displacement, all);
         if (!seen.regular || seen.rank < 1) {
             out.why = "the measured spots are too few to tell the shape from the motion";
             return out;
@@ -168,14 +179,13 @@ void report_spots(std::span<const SpotObservation> spots, const std::vector<bool
 }
 
 // Adds what the amplitudes' uncertainty does to the pose; all of it is anew with every part.
-void widen(const Joint& joint, double noise_variance_factor, double reach_mm, ElasticCorrection& out) {
+void widen(const Joint& joint, double reach_mm, ElasticCorrection& out) {
     RegionCorrection& c = out.correction;
     const Index j = joint.amplitudes.size();
-    const Matrix6 random = noise_variance_factor * c.covariance_random;
     const MatrixXd cross = joint.rigid_from_amplitudes * joint.covariance;
     const Matrix6 added = cross * joint.rigid_from_amplitudes.transpose();
     const Matrix6 before = c.covariance;
-    c.covariance_random = random + added;
+    c.covariance_random += added;
     c.covariance = c.covariance_systematic + c.covariance_random;
     out.covariance = MatrixXd::Zero(6 + j, 6 + j);
     out.covariance.topLeftCorner<6, 6>() = c.covariance;
@@ -192,7 +202,7 @@ void widen(const Joint& joint, double noise_variance_factor, double reach_mm, El
     }
     c.sigma_abc_deg *= std::sqrt(ratio);
     c.sigma_random.abc_deg *= std::sqrt(ratio);
-    c.sigma_at_spots_mm = std::hypot(c.sigma_at_spots_mm * std::sqrt(noise_variance_factor), reach_mm);
+    c.sigma_at_spots_mm = std::hypot(c.sigma_at_spots_mm, reach_mm);
 }
 
 // The reason why the modes must not act, empty when they may.
@@ -261,8 +271,8 @@ Expected<ElasticCorrection> solve_elastic(std::span<const SpotObservation> spots
     }
     const Prior prior = prior_of(modes);
     std::vector<bool> used;
-    Joint joint = best_joint(spots, slot_of, options, prior, rough.displacement, modes.spots.size(),
-                             elastic.fit_significance, used);
+    Joint joint = best_joint(as_noisy(spots, slot_of, modes), slot_of, options, prior, rough.displacement,
+                             modes.spots.size(), elastic.fit_significance, used);
     if (!joint.found) {
         out.why = joint.why;
         return out;
@@ -285,7 +295,7 @@ Expected<ElasticCorrection> solve_elastic(std::span<const SpotObservation> spots
     if (!out.why.empty()) return out;
     report_spots(spots, used, joint);
     out.correction = std::move(joint.correction);
-    widen(joint, prior.noise_variance_factor, reach, out);
+    widen(joint, reach, out);
     out.acted = true;
     return out;
 }

@@ -9,7 +9,7 @@
 // them, with its limits, sensors and tests; again until a stands. This is the joint solution: M has no part
 // along the rigid motion. Covariance, tangent of pose.h then amplitudes (mm):
 //     C_aa = (Phi^T M Phi + Lambda^-1)^-1,  K = (G^T L G)^-1 G^T L Phi,  C_xa = K C_aa,  C_xx = C_rigid + K C_aa K^T.
-// Information is that of the stated sigmas over max(1, kappa), kappa as learnt.
+// Sigmas are the stated ones, times the spot's factor as learnt where that is more than 1.
 //
 // When the modes act. Only where all of this holds; else the rigid answer stands, bit for bit, and `why` says:
 //   - every measured spot is one that was learnt, as it was taught then;

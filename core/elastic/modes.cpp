@@ -25,7 +25,7 @@ std::vector<int> slots_of(std::span<const ElasticSpot> spots, std::span<const Sp
 ShapeInformation shape_information(std::size_t slots, std::span<const int> slot_of,
                                    std::span<const SpotObservation> observations,
                                    const CorrectionOptions& options, const Displacement& displacement,
-                                   const std::vector<bool>& used, double noise_variance_factor) {
+                                   const std::vector<bool>& used) {
     using namespace correction;
     RegionSystem system;
     system.load(observations, options, false);
@@ -74,8 +74,7 @@ ShapeInformation shape_information(std::size_t slots, std::span<const int> slot_
             if (observations[n].weights[i] > 0) mask[i] = 1;
         e = e.cwiseProduct(mask);
         const Eigen::Matrix3d whiten = s.shape.inverse() * axes.transpose();
-        const Eigen::Matrix3d l =
-            whiten.transpose() * mask.asDiagonal() * whiten / (s.sigma * s.sigma * noise_variance_factor);
+        const Eigen::Matrix3d l = whiten.transpose() * mask.asDiagonal() * whiten / (s.sigma * s.sigma);
         out.measured.segment<3>(row) = back * e;
         out.seen[static_cast<std::size_t>(slot_of[n])] = l;
         blocks.block<3, 3>(row, row) = l;
@@ -89,6 +88,8 @@ ShapeInformation shape_information(std::size_t slots, std::span<const int> slot_
                 back * shared.spots[n].columns.transpose();
         observed += s.observed;
     }
+    out.motions = moves;
+    out.shared = static_cast<int>(nuisances);
     const Eigen::MatrixXd heavy = blocks * moves;
     Eigen::MatrixXd inner = moves.transpose() * heavy;
     inner.diagonal().tail(nuisances).array() += 1;
@@ -119,15 +120,15 @@ Expected<ElasticRow> elastic_row(std::span<const ElasticSpot> spots,
                                "elastic part");
     const elastic::ShapeInformation seen =
         elastic::shape_information(spots.size(), slot_of, observations, options, displacement,
-                                   std::vector<bool>(observations.size(), true), 1);
+                                   std::vector<bool>(observations.size(), true));
     if (!seen.regular || seen.rank < 1)
         return input_error("the measured spots are too few to tell a shape from a motion", "elastic part",
                            "measure more spots of the region");
     ElasticRow row;
     row.residual_mm = seen.measured;
-    row.information = seen.information;
     row.seen = seen.seen;
-    row.rank = seen.rank;
+    row.motions = seen.motions;
+    row.shared = seen.shared;
     return row;
 }
 
@@ -138,6 +139,8 @@ Expected<void> check_modes(const ElasticModes& modes) {
     std::set<std::string> ids;
     for (const ElasticSpot& s : modes.spots) {
         if (s.id.empty() || !ids.insert(s.id).second) return refuse("two spots of the modes have one name");
+        if (!(s.noise_factor > 0) || !std::isfinite(s.noise_factor))
+            return refuse("the noise that was left when learning is no positive number");
         if (!s.workobject_from_sensor.matrix().allFinite() || !s.reference_mm.allFinite() ||
             !s.weights.allFinite() || !s.seen.allFinite() || !s.common_mm.allFinite())
             return refuse("a spot of the modes holds a number that is not finite");

@@ -14,12 +14,12 @@
 // (P = 1, nuisance.h). M u is what the measures say of u; M G = 0, so that y may be the residual of any D near the
 // solution. To first order; the slope of a curved contour along its travel is left out of what u does to it.
 //
-// Learning (learn_modes). Probabilistic principal components (Tipping and Bishop 1999) with M in the place of
-// the isotropic noise: expectation and maximisation over u = mean + C z, z ~ N(0, 1), noise M^-1 kappa. kappa
-// is by how much the stated variance is too small or too large; it is learnt with each number of modes, so that
-// noise which is stated too small becomes no mode. Directions that no row tells are 0 in phi (shortest).
-// Modes are the singular vectors of C; phi_k is scaled to length 1 at the spot that moves most, so that a_k is
-// in mm there, and its sign makes its largest coordinate positive.
+// Learning (learn_modes). Factor analysis (Rubin and Thayer 1982) with M in the place of the noise: expectation
+// and maximisation over u = mean + C z, z ~ N(0, 1), and over a factor kappa_n of each spot's stated variance, L_n /
+// kappa_n in M. A spot whose stated sigma is too small moves alone, in every part otherwise: noise, no mode. The
+// factors are learnt with each number of modes, drawn to their mean by as much as one part tells. Directions that no row
+// tells are 0 in phi (shortest). Modes are the singular vectors of C; phi_k is scaled to length 1 at the spot that
+// moves most, so that a_k is in mm there, and its sign makes its largest coordinate positive.
 //
 // Number. Likelihood of the parts left out, in folds by part (runs of one part always together): the smallest number on which
 // no larger one gains more than its own standard error and `least_gain`, which noise does not reach. None is an answer. Before,
@@ -42,9 +42,9 @@ struct ElasticRow {
     std::string id;                     // "run 12"; one row each
     std::string part_id;                // rows of one part are held out together
     Eigen::VectorXd residual_mm;        // u as measured, work object; 0 where nothing is told
-    Eigen::MatrixXd information;        // M, 1/mm^2
-    std::vector<Eigen::Matrix3d> seen;  // L of each spot, 1/mm^2
-    int rank = 0;                       // of M: observed coordinates less free degrees
+    std::vector<Eigen::Matrix3d> seen;  // L of each spot, 1/mm^2; 0: not measured
+    Eigen::MatrixXd motions;            // G: what the free degrees of D and the shared errors do to y
+    int shared = 0;                     // of the columns of G, the last ones: P = 1
 };
 
 // A spot as it stood when the modes were learnt.
@@ -54,6 +54,7 @@ struct ElasticSpot {
     Eigen::Vector3d reference_mm = Eigen::Vector3d::Zero();  // sensor frame
     Eigen::Vector3d weights = {1, 0, 1};
     Eigen::Matrix3d seen = Eigen::Matrix3d::Zero();  // mean L over the rows, 1/mm^2, work object
+    double noise_factor = 1;  // of its stated sigma, times that of all spots: sqrt(kappa_n)
     Eigen::Vector3d common_mm = Eigen::Vector3d::Zero();
     Eigen::Vector3d place_mm() const { return workobject_from_sensor * reference_mm; }
 };
@@ -69,7 +70,7 @@ struct ElasticMode {
 struct ElasticModes {
     std::vector<ElasticSpot> spots;
     std::vector<ElasticMode> modes;  // largest variance first; may be none
-    double noise_factor = 1;         // sqrt(kappa): scatter left over stated sigma
+    double noise_factor = 1;         // of all spots together: scatter left over stated sigma
     int rows = 0, parts = 0;
     // Gain of the hold-out log-likelihood per part by the mode of this number, and its standard error; the
     // last one is the one that was not taken.
@@ -93,7 +94,7 @@ Expected<ElasticRow> elastic_row(std::span<const ElasticSpot> spots,
                                  const CorrectionOptions& options, const Displacement& displacement);
 
 // Error (input): no row, two rows of one id, numbers that are not finite, sizes that differ, information
-// that is none.
+// that is none, fewer observed coordinates than free degrees.
 Expected<ElasticModes> learn_modes(std::span<const ElasticSpot> spots, std::span<const ElasticRow> rows,
                                    const LearnOptions& options = {});
 

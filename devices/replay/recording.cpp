@@ -49,7 +49,9 @@ Expected<fs::path> inside(const fs::path& folder, const std::string& name, const
 // The name under which a table of all poses is found by itself.
 bool is_pose_table(const fs::path& p) {
     const std::string name = lower(p.filename().string());
-    return name == "poses.csv" || name == "poses.txt" || name == "poses.ls" || name == "poses.json";
+    for (const char* known : {"poses.csv", "poses.txt", "poses.dat", "poses.mod", "poses.ls", "poses.json"})
+        if (name == known) return true;
+    return false;
 }
 
 // The pose file that belongs to `file` by its name.

@@ -9,7 +9,7 @@
 // Where there are no CSVs, profiles are the files of the first of these kinds that is there: .tsv .npy .ply
 // .pcd .asc .xyz .dat .txt (profile_layout.h). A single file with several profiles stands for a folder: its
 // profiles are the frames, their spot ids the numbers that the file gives them ("3"), or its stem where there
-// is only one. A table of all poses (pose_table.h), named in the layout or called poses.{csv,txt,ls,json},
+// is only one. A table of all poses (pose_table.h), named in the layout or called poses.{csv,txt,dat,mod,ls,json},
 // counts before pose files. Without a manifest, and where the manifest names no pose, the pose of
 // frame0007.png is looked for as frame0007.{json,txt,yaml,yml}, pose0007.{..} and poses/0007.{..} beside or
 // one folder above it (pose_json.h says what the formats mean). Either every frame has a pose or none: a

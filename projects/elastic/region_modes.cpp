@@ -44,8 +44,9 @@ struct Predictions {
 };
 
 // How far a spot's measure lies from where D and the shape put it, along the directions that it tells.
-void predict(const SpotObservation& spot, const ElasticCorrection& joint, const RegionCorrection& rigid,
-             const BeadShape& shape, Predictions& out) {
+// `noise_factor`: its scatter over its stated sigma, as learnt.
+void predict(const SpotObservation& spot, double noise_factor, const ElasticCorrection& joint,
+             const RegionCorrection& rigid, const BeadShape& shape, Predictions& out) {
     const BeadPlace place{spot.workobject_from_sensor * spot.reference_mm, 0};
     const BeadPoint point = bead_point(joint, shape, place);
     const Pose& d = joint.correction.displacement.workobject_from_movedworkobject;
@@ -61,7 +62,7 @@ void predict(const SpotObservation& spot, const ElasticCorrection& joint, const 
         out.elastic.push_back(axis.dot(of_joint));
         double noise = spot.sigma_mm * spot.sigma_mm;
         if (spot.covariance_mm2 && i != 1) noise = (*spot.covariance_mm2)(i / 2, i / 2);
-        const double variance = moved.dot(point.covariance_mm2 * moved) + noise;
+        const double variance = moved.dot(point.covariance_mm2 * moved) + noise_factor * noise_factor * noise;
         out.stated += variance;
         if (!joint.acted) continue;
         ++out.judged;
@@ -126,6 +127,8 @@ Expected<ModesComparison> compare_region(const StoredShapes& shapes) {
     decided.fewest_parts = 2;
     Predictions found;
     for (const ElasticSpot& left_out : shapes.spots) {
+        const auto of_all = std::ranges::find(learnt.spots, left_out.id, &ElasticSpot::id);
+        const double noise_factor = std::max(1.0, learnt.noise_factor * of_all->noise_factor);
         std::vector<ElasticSpot> spots = shapes.spots;
         std::erase_if(spots, [&](const ElasticSpot& s) { return s.id == left_out.id; });
         std::vector<BeadPlace> places;
@@ -146,7 +149,7 @@ Expected<ModesComparison> compare_region(const StoredShapes& shapes) {
                 const auto rigid = solve_region(seen, shapes.options);
                 const auto joint = solve_elastic(seen, shapes.options, modes);
                 if (!rigid || !joint || rigid->status != CorrectionStatus::ok) continue;
-                predict(spot, *joint, *rigid, *shape, found);
+                predict(spot, noise_factor, *joint, *rigid, *shape, found);
             }
         }
     }

@@ -200,6 +200,7 @@ void describe(A& a, ElasticSpot& v) {
     a("reference_mm", v.reference_mm);
     a("weights", v.weights);
     a("seen", v.seen);
+    a("noise_factor", v.noise_factor);
     a("common_mm", v.common_mm);
 }
 template <class A>

@@ -89,8 +89,8 @@ RowSums sums_of(const pqxx::row& row, int c) {
 
 class Reader {
   public:
-    Reader(pqxx::transaction_base& work, const FleetTarget& target, const FleetStatisticsOptions& options)
-        : work_(work), target_(target), options_(options), runs_(options.statistics.runs) {}
+    Reader(pqxx::transaction_base& work, const FleetStatisticsOptions& options)
+        : work_(work), options_(options), runs_(options.statistics.runs) {}
 
     Expected<Statistics> read() {
         SEAM_TRY(spans_, fleet::spans_of(runs_.since_utc, runs_.until_utc));
@@ -487,7 +487,6 @@ WHERE x < $8::float8 OR x > $9::float8)sql",
     }
 
     pqxx::transaction_base& work_;
-    const FleetTarget& target_;
     const FleetStatisticsOptions& options_;
     const RunValuesWanted& runs_;
     Production production_;
@@ -507,7 +506,7 @@ Expected<Statistics> fleet_statistics(const FleetTarget& target, const FleetStat
         // All queries see the same instant.
         pqxx::transaction<pqxx::isolation_level::repeatable_read, pqxx::readwrite_policy::read_only> work(
             store.connection());
-        return Reader(work, target, options).read();
+        return Reader(work, options).read();
     });
 }
 

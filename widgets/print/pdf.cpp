@@ -85,8 +85,7 @@ QColor colour_of(Tone tone) {
 // Lays the blocks into a document; lengths are in device pixels.
 class Builder {
   public:
-    Builder(QTextDocument& document, double width_px)
-        : document_(document), cursor_(&document), width_px_(width_px) {
+    Builder(QTextDocument& document, double width_px) : cursor_(&document), width_px_(width_px) {
         cursor_.beginEditBlock();
     }
     ~Builder() { cursor_.endEditBlock(); }
@@ -243,7 +242,6 @@ class Builder {
         }
     }
 
-    QTextDocument& document_;
     QTextCursor cursor_;
     double width_px_;
     bool empty_ = true;  // the last block waits for its content

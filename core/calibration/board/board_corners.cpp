@@ -161,7 +161,9 @@ void refine_corners(const cv::Mat& grey, double factor, double blur_px, SaddleLa
     const int most = std::clamp(static_cast<int>(3 * blur_px), usual_half, 26);
     std::map<LatticeCell, CornerFit> fits;
     std::vector<LatticeCell> bad;
-    for (const auto& [cell, corner] : lattice) {
+    for (const auto& entry : lattice) {
+        const LatticeCell& cell = entry.first;
+        const LatticeCorner& corner = entry.second;
         const auto place = predict(lattice, cell.first, cell.second, 3);
         if (!place) {
             bad.push_back(cell);

@@ -92,7 +92,6 @@ std::optional<LatticePlace> predict(const SaddleLattice& lattice, double i, doub
 
 void drop_misfits(SaddleLattice& lattice, double share) {
     for (int round = 0; round < 3; ++round) {
-        LatticeCell worst;
         std::vector<std::pair<double, LatticeCell>> off;
         for (const auto& [cell, corner] : lattice)
             if (const auto place = predict(lattice, cell.first, cell.second))

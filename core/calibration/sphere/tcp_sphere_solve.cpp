@@ -136,7 +136,6 @@ double solve_reduced(const std::vector<Section>& sections, Model& model, bool ra
     for (int iteration = 0; iteration < iterations; ++iteration) {
         Matrix10 h = Matrix10::Zero();
         Vector10 g = Vector10::Zero();
-        double used = 0;
         for (const auto& section : sections) {
             if (!section.used) continue;
             Eigen::Vector3d u;
@@ -147,7 +146,6 @@ double solve_reduced(const std::vector<Section>& sections, Model& model, bool ra
             if (!std::isinf(scale2)) weight *= (scale2 / (q + scale2)) * (scale2 / (q + scale2));
             h.noalias() += (weight * j.transpose()).lazyProduct(j);
             g.noalias() += weight * j.transpose() * u;
-            used += 1;
         }
         bool moved = false;
         double gain = 0;

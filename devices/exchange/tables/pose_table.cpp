@@ -18,13 +18,12 @@
 #include "devices/exchange/tables/csv_table.h"
 #include "devices/exchange/tables/point_table.h"
 #include "devices/exchange/tables/profile_layout.h"
+#include "devices/exchange/tables/program_poses.h"
 
 namespace seamwright {
 namespace {
 
-constexpr double kFarthestPose_mm = 1e5;
 constexpr double kNearForMillimetres = 100;  // no robot measures with its flange within 100 mm of its base
-constexpr std::size_t kPoseLimit = 1'000'000;
 
 struct PoseRow {
     std::string at;
@@ -265,76 +264,6 @@ Expected<PoseTable> from_json(std::string_view text, const std::string& where) {
 
 }  // namespace
 
-Expected<PoseTable> parse_fanuc_ls(std::string_view text, const std::string& where) {
-    PoseTable table;
-    table.names.push_back({PoseNames::Says::remarks, "", {}});
-    const auto positions = text.find("/POS");
-    if (positions == std::string_view::npos) return input_error("the program has no /POS", where);
-    std::size_t line = 1 + static_cast<std::size_t>(std::count(
-                               text.begin(), text.begin() + static_cast<std::ptrdiff_t>(positions), '\n'));
-    std::string_view rest = text.substr(positions);
-    std::string frames;
-    for (std::size_t at; (at = rest.find("P[")) != std::string_view::npos;) {
-        line += static_cast<std::size_t>(
-            std::count(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
-        rest.remove_prefix(at);
-        const auto close = rest.find(']'), open = rest.find('{'), end = rest.find('}');
-        TablePose pose;
-        pose.at = fmt::format("{}, line {}", where, line);
-        if (close == rest.npos || open == rest.npos || end == rest.npos || close > open || open > end)
-            return input_error("the position does not end", pose.at, "the file is cut short");
-        const std::string_view label = rest.substr(2, close - 2),
-                               body = rest.substr(open + 1, end - open - 1);
-        const auto colon = label.find(':');
-        table.names.front().cells.emplace_back(
-            csv::trimmed(colon == label.npos ? label : label.substr(colon + 1)));
-        const auto after = [&](std::string_view key, char sign) -> std::optional<std::string_view> {
-            for (std::size_t from = 0; (from = body.find(key, from)) != body.npos; from += key.size()) {
-                const bool starts =
-                    from == 0 || std::string_view(" \t\r\n,;:").find(body[from - 1]) != body.npos;
-                const auto value = csv::blanks_off(body.substr(from + key.size()));
-                if (starts && value.starts_with(sign)) {
-                    const auto v = csv::blanks_off(value.substr(1));
-                    return v.substr(0, v.find_first_of(" \t\r\n,;"));
-                }
-            }
-            return std::nullopt;
-        };
-        if (after("J1", '='))
-            return input_error("is given in joint angles", pose.at, "store it as Cartesian");
-        std::array<double, 6> values{};
-        const char* keys[] = {"X", "Y", "Z", "W", "P", "R"};
-        for (std::size_t i = 0; i < 6; ++i) {
-            const auto value = after(keys[i], '=');
-            double number = 0;
-            if (!value || !text_number(*value, false, number) || std::isnan(number))
-                return input_error(Text("{} is {}", keys[i], value ? "no number" : "missing"), pose.at);
-            values[i] = number;
-        }
-        const std::string here = fmt::format("UF {}, UT {}", csv::shown(after("UF", ':').value_or("?")),
-                                             csv::shown(after("UT", ':').value_or("?")));
-        if (!frames.empty() && frames != here)
-            return input_error(Text("is in {}, those before in {}", here, frames), pose.at,
-                               "give poses of one user frame and one tool");
-        frames = here;
-        PoseForm form{"fanuc-wpr", 1, kPi / 180};
-        SEAM_TRY(auto read, pose_of(form, {pose.at, {values.begin(), values.end()}}));
-        pose.pose = read;
-        table.poses.push_back(std::move(pose));
-        line += static_cast<std::size_t>(
-            std::count(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
-        rest.remove_prefix(end);
-        if (table.poses.size() > kPoseLimit) return input_error("there are more poses than a million", where);
-    }
-    if (table.poses.empty()) return input_error("there are no positions behind /POS", where);
-    table.understood = fmt::format(
-        "{} FANUC positions in {} (taken as the flange in the robot's base: a tool or user frame that is not "
-        "zero "
-        "must be undone first)",
-        table.poses.size(), frames);
-    return table;
-}
-
 Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& where,
                                      const PoseLayout& layout) {
     if (is_utf16(text)) return input_error("the text is UTF-16", where, "save it as UTF-8 or plain ASCII");
@@ -358,7 +287,7 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
     const auto start = text.find_first_not_of(" \t\r\n");
     if (start == text.npos) return input_error("the file is empty", where);
     if (text[start] == '{' || text.substr(start, 2) == "[{") return from_json(text, where);
-    if (text.find("/POS") != text.npos && text.find("/PROG") != text.npos) return parse_fanuc_ls(text, where);
+    if (auto program = parse_program_poses(text, where)) return std::move(*program);
 
     const char separator = separator_of(text);
     const bool decimal_comma = separator != ',' && text.find(',') != text.npos && text.find('.') == text.npos;

@@ -1,6 +1,6 @@
 #pragma once
-// Robot poses as people have them: one table for all frames (CSV by name or by order, FANUC LS, JSON), or a
-// text file beside each frame. How three angles or four numbers make a rotation is named or asked, and so are
+// Robot poses as people have them: one table for all frames (CSV by name or by order, JSON, the points of a robot
+// program: program_poses.h), or a text file beside each frame. How three angles or four numbers make a rotation is named or asked, and so are
 // units that do not show.
 //
 // A table in text is a row a pose: [name] x y z and a rotation, by header or by order; or 4x4 (or 3x4)
@@ -25,6 +25,9 @@ namespace seamwright {
 
 inline constexpr const char* kPoseConventions[] = {"kuka-abc",  "fanuc-wpr", "rpy", "ur-rotvec",
                                                    "quat-wxyz", "quat-xyzw", "zyz", "matrix"};
+
+inline constexpr double kFarthestPose_mm = 1e5;
+inline constexpr std::size_t kPoseLimit = 1'000'000;  // in one table
 
 struct PoseLayout {
     std::string convention;  // of kPoseConventions; empty: as the header says
@@ -58,9 +61,6 @@ struct PoseTable {
 Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& where,
                                      const PoseLayout& layout);
 Expected<PoseTable> read_pose_table(const std::filesystem::path& path, const PoseLayout& layout);
-
-// /POS of a FANUC program: P[1:"S1"]{ GP1: UF : 0, UT : 1, ... X = 1.0 mm, ... R = 0.0 deg };
-Expected<PoseTable> parse_fanuc_ls(std::string_view text, const std::string& where);
 
 // The pose file of one frame: as read_pose_file() (pose_json.h) where its form says all by itself, else a
 // text with one pose as above.

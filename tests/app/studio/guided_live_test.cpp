@@ -46,7 +46,8 @@ class GuidedLive : public Guided, public testing::WithParamInterface<LiveMethod>
 };
 
 TEST_P(GuidedLive, FromTheFirstCaptureToTheStoredCalibration) {
-    const auto [method, poses, column, used] = GetParam();
+    const auto& [method, poses_of, column, used] = GetParam();
+    const int poses = poses_of;
     make_project();
     capture_until_killed(method, 3);
     ASSERT_FALSE(HasFailure());

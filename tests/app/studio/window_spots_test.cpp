@@ -341,9 +341,8 @@ TEST(Landmark, IsCarriedBackIntoTheTaughtFrame) {
     const Eigen::Vector2d wanted(6, -5);
     for (const auto& [dx, dz, deg] : {std::array{0., 0., 0.}, {5., -3., 2.}, {-7., 6., -4.}, {2., 9., 5.}}) {
         const Eigen::Rotation2Dd turn(rad_from_deg(deg));
-        const auto moved = [&](const Eigen::Vector2d& p) -> Eigen::Vector2d {
-            return turn * p + Eigen::Vector2d(dx, dz);
-        };
+        const Eigen::Vector2d by(dx, dz);
+        const auto moved = [&](const Eigen::Vector2d& p) -> Eigen::Vector2d { return turn * p + by; };
         Profile seen = contour(-30, 30);
         for (std::size_t k = 0; k < seen.size(); ++k) {
             const Eigen::Vector2d at = moved({seen.x_mm[k], seen.z_mm[k]});

@@ -237,10 +237,10 @@ void add_lids(std::mt19937_64& random, Cloud& cloud, int points_each) {
     std::uniform_real_distribution<double> uniform(0, 1);
     std::normal_distribution<double> noise(0, 0.03);
     const std::size_t seen = cloud.size();
-    for (const auto& [x, y] : {std::pair{-40.0, 20.0}, {30.0, -50.0}, {70.0, 10.0}, {-90.0, -40.0}}) {
+    for (const Eigen::Vector2d& at : {Eigen::Vector2d{-40, 20}, {30, -50}, {70, 10}, {-90, -40}}) {
         std::size_t foot = 0;
         const auto off = [&](std::size_t i) {
-            return std::hypot(cloud.points[i].x() - x, cloud.points[i].y() - y);
+            return std::hypot(cloud.points[i].x() - at.x(), cloud.points[i].y() - at.y());
         };
         for (std::size_t i = 0; i < seen; ++i)
             if (off(i) < off(foot)) foot = i;

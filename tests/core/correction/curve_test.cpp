@@ -12,6 +12,7 @@ namespace {
 
 using namespace testing_doors;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr double kRadius = 350;
 
@@ -149,6 +150,27 @@ TEST(ContourCurve, BeyondItsRangeTheTangentIsFollowedAndItIsSaid) {
     EXPECT_EQ(r->status, CorrectionStatus::ok);
     EXPECT_LT(distance_mm(r->displacement.workobject_from_movedworkobject, slide), 1e-6);
     EXPECT_THAT(r->message, HasSubstr("beyond the taught range"));
+}
+
+// A sensor that stands 6 degrees off its edge: where no curve tells the slope, a slide looks like spots that are wrong.
+TEST(ContourCurve, WhereNoneWasTakenWhatSlidIsNamedBesideWhatDoesNotFit) {
+    Rng rng(4);
+    std::vector<SpotObservation> spots = door(rng, 10);
+    const Pose slide = make_pose(Eigen::Matrix3d::Identity(), {12, 0, 0});
+    const auto measured = [&](double slope) {
+        for (SpotObservation& s : spots) {
+            const Pose m = s.workobject_from_sensor.inverse() * slide * s.workobject_from_sensor;
+            const Eigen::Vector3d p = m * s.reference_mm, v = m.linear() * Eigen::Vector3d(slope, 1, 0);
+            s.measured_mm = p - v * (p.y() / v.y());
+        }
+        const auto r = solve_region(spots, {});
+        EXPECT_TRUE(r);
+        return r->message;
+    };
+    EXPECT_THAT(measured(0.1), HasSubstr("where no pass was accepted"));
+    EXPECT_THAT(measured(0), Not(HasSubstr("where no pass was accepted")));
+    for (SpotObservation& s : spots) s.curve = ContourCurve{{0.1, 0, 0}, {0, 0, 0}, -20, 20};
+    EXPECT_THAT(measured(0.1), Not(HasSubstr("where no pass was accepted")));
 }
 
 TEST(FitContourCurve, FindsTheLowestOrderThatTheDataAskFor) {

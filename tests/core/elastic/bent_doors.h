@@ -55,9 +55,10 @@ inline Door door(int count, const Pose& placed = Pose::Identity()) {
     return out;
 }
 
-// Where the displaced, bent contour pierces the laser planes, with noise of the stated sigma times `noise`.
+// Where the displaced, bent contour pierces the laser planes, with noise of the stated sigma times `noise`, and times that of
+// the spot in `of_spot` where it is given.
 inline std::vector<SpotObservation> measured(const Door& door, const Pose& truth, const Bend& bend, Rng& rng,
-                                             double noise = 1) {
+                                             double noise = 1, const std::vector<double>& of_spot = {}) {
     std::vector<SpotObservation> out = door.spots;
     std::normal_distribution<double> normal;
     for (std::size_t n = 0; n < out.size(); ++n) {
@@ -72,8 +73,8 @@ inline std::vector<SpotObservation> measured(const Door& door, const Pose& truth
             t -= y / dy;
         }
         const Eigen::Vector3d p = sensor_from_door * bent(t, bend);
-        s.measured_mm = Eigen::Vector3d(p.x() + noise * s.sigma_mm * normal(rng), 0,
-                                        p.z() + noise * s.sigma_mm * normal(rng));
+        const double sigma = noise * s.sigma_mm * (of_spot.empty() ? 1 : of_spot[n]);
+        s.measured_mm = Eigen::Vector3d(p.x() + sigma * normal(rng), 0, p.z() + sigma * normal(rng));
     }
     return out;
 }
@@ -93,12 +94,12 @@ inline std::vector<ElasticSpot> slots(const Door& door) {
 
 // Parts with independent normal amplitudes of the given sigmas.
 inline std::vector<ElasticRow> rows(const Door& door, int parts, double bend, double twist, Rng& rng,
-                                    double noise = 1) {
+                                    double noise = 1, const std::vector<double>& of_spot = {}) {
     std::normal_distribution<double> n;
     std::vector<ElasticRow> out;
     for (int p = 0; p < parts; ++p) {
         const Bend b{bend * n(rng), twist * n(rng), 0};
-        const auto spots = measured(door, small_motion(rng, 1, 0.1), b, rng, noise);
+        const auto spots = measured(door, small_motion(rng, 1, 0.1), b, rng, noise, of_spot);
         CorrectionOptions options;
         options.reject_outliers = false;
         const auto solved = solve_region(spots, options);

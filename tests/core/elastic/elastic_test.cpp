@@ -19,8 +19,8 @@ ElasticModes learnt(const Door& d, int parts, double bend, double twist, std::ui
 TEST(ElasticModes, RigidPartsGiveNone) {
     const Door d = door(12);
     int none = 0;
-    for (std::uint64_t seed = 1; seed <= 20; ++seed) none += learnt(d, 30, 0, 0, seed).modes.empty();
-    EXPECT_GE(none, 19);
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) none += learnt(d, 30, 0, 0, seed).modes.empty();
+    EXPECT_GE(none, 11);
 }
 
 TEST(ElasticModes, BendAndTwistGiveTwo) {
@@ -69,6 +69,29 @@ TEST(ElasticModes, NoiseStatedTooSmallBecomesNoMode) {
     EXPECT_TRUE(modes->modes.empty());
     EXPECT_NEAR(modes->noise_factor, 3, 0.3);
     EXPECT_EQ(modes->message.english().find("rigid"), std::string::npos) << modes->message.english();
+}
+
+// A dull edge at one spot, a bright one at another: each scatters by itself, which no shape explains.
+TEST(ElasticModes, SpotsOfUnequalNoiseAreNoModeAndHideNone) {
+    const Door d = door(12);
+    int none = 0, two = 0;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        Rng rng(seed);
+        std::normal_distribution<double> normal;
+        std::vector<double> of_spot;
+        for (int n = 0; n < 12; ++n) of_spot.push_back(std::exp(0.7 * normal(rng)));
+        const auto rigid = learn_modes(slots(d), rows(d, 30, 0, 0, rng, 1, of_spot));
+        const auto bent = learn_modes(slots(d), rows(d, 30, 0.4, 0.3, rng, 1, of_spot));
+        ASSERT_TRUE(rigid && bent);
+        none += rigid->modes.empty();
+        two += bent->modes.size() == 2;
+        // Quiet spots are drawn to the others: said too loud rather than too quiet.
+        for (std::size_t n = 0; n < 12; ++n)
+            EXPECT_GT(bent->noise_factor * bent->spots[n].noise_factor, 0.7 * of_spot[n])
+                << "seed " << seed << " spot " << n;
+    }
+    EXPECT_EQ(none, 6);
+    EXPECT_EQ(two, 6);
 }
 
 // Two bends alike: the first mode alone gains next to nothing, the scatter holds the other one.
@@ -121,7 +144,7 @@ TEST(ElasticModes, RefusesWhatIsNoLearningSet) {
     nan[0].residual_mm[2] = std::numeric_limits<double>::quiet_NaN();
     EXPECT_FALSE(learn_modes(slots(d), nan));
     auto negative = r;
-    negative[1].information = -negative[1].information;
+    for (Eigen::Matrix3d& l : negative[1].seen) l = -l;
     EXPECT_FALSE(learn_modes(slots(d), negative));
     auto other = slots(d);
     other.pop_back();

@@ -38,9 +38,7 @@ void PrintTo(const Kind& k, std::ostream* out) {
 class Line {
   public:
     Line(const Kind& kind, std::uint64_t seed)
-        : kind_(kind),
-          random_(seed),
-          corrector_(corrector_settings(), make_rsi_protocol({.relative = kind.relative}, 4)) {
+        : random_(seed), corrector_(corrector_settings(), make_rsi_protocol({.relative = kind.relative}, 4)) {
         robot_.relative = kind.relative;
         robot_.hold_on = kind.relative == kind.wrong_hold_on;
         robot_.adds_up_late = kind.adds_up_late;
@@ -200,7 +198,6 @@ class Line {
         RsiRobot::Numbers in_force;
         std::uint64_t ipoc;
     };
-    const Kind kind_;
     std::mt19937_64 random_;
     CyclicCorrector corrector_;
     std::vector<Packet> to_driver_, to_robot_;

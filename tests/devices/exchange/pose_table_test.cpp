@@ -201,5 +201,96 @@ TEST(PoseTable, NamesThatDoNotFitAreNotTakenForTheOrder) {
     expect_no_poses("800 -50 600 1 0 0 0\nS2 -50 600 1 0 0 0\n", "line 2", {"quat-wxyz", "", ""});
 }
 
+const std::string kDataList = R"(&ACCESS RVP
+&REL 1
+DEFDAT  DOOR PUBLIC
+;FOLD EXTERNAL DECLARATIONS;%{PE}%MKUKATPBASIS
+EXT  BAS (BAS_COMMAND  :IN,REAL  :IN )
+;ENDFOLD
+DECL E6AXIS XHOME={A1 0.0,A2 -90.0,A3 90.0,A4 0.0,A5 0.0,A6 0.0,E1 0.0}
+DECL FDAT FHOME={TOOL_NO 9,BASE_NO 0,IPO_FRAME #BASE,POINT2[] " ",TQ_STATE FALSE}
+DECL E6POS XP1={X 800.000,Y -50.0000,Z 6.0E+02,A 90.0000,B 0.0,C 0.0,S 2,T 35,E1 0.0,E2 0.0,E3 0.0,E4 0.0,E5 0.0,E6 0.0}
+DECL FDAT FP1={TOOL_NO 3,BASE_NO 1,IPO_FRAME #BASE,POINT2[] " "}
+decl e6pos xp2={x 820.0,y 10.0,z 610.0,a -30.0,b 0.0,c 0.0}
+DECL FDAT FP2={TOOL_NO 3,BASE_NO 1,IPO_FRAME #BASE,POINT2[] " "}
+DECL LDAT LCPDAT1={VEL 2.0,ACC 100.0,APO_DIST 100.0}
+ENDDAT
+)";
+
+TEST(PoseTable, PointsOfAKukaDataList) {
+    expect_poses(kDataList);
+    const auto table = parse_pose_table(kDataList, "door.dat", {});
+    ASSERT_TRUE(table) << table.error().sentence();
+    EXPECT_THAT(table->names.front().cells, testing::ElementsAre("P1", "P2"));
+    EXPECT_THAT(table->understood, HasSubstr("BASE_DATA[1], TOOL_DATA[3]"));
+    EXPECT_THAT(table->poses[1].at, HasSubstr("line 11"));
+    EXPECT_TRUE(poses_of_frames(*table, std::vector<std::string>{"p2.csv", "p1.csv"}, "x"));
+
+    const std::string list =
+        "DEFDAT D\nDECL FRAME F={X 1,Y 2,Z 3,A 0,B 0,C 0}\nDECL E6POS SPOT[2]\n"
+        "SPOT[1]={X 800,Y -50,Z 600,A 90,B 0,C 0}\nSPOT[2]={E6POS: X 820,Y 10,Z 610,A -30,B 0,C 0}\nENDDAT\n";
+    expect_poses(list);
+    const auto array = parse_pose_table(list, "d.dat", {});
+    EXPECT_THAT(array->names.front().cells, testing::ElementsAre("SPOT[1]", "SPOT[2]"));
+
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string text = kDataList;
+        text.replace(text.find(from), from.size(), to);
+        return text;
+    };
+    expect_no_poses(with("FP2={TOOL_NO 3", "FP2={TOOL_NO 4"),
+                    "is in BASE_DATA[1], TOOL_DATA[4], those before");
+    expect_no_poses(with("B 0.0,C 0.0,S", "B 0.0,S"), "C is missing");
+    expect_no_poses(with("A 90.0000", "A #RIGHT"), "A is no number");
+    expect_no_poses(with("X 800.000", "X 800000"), "exceeds 100 m");
+    expect_no_poses(with("xp2", "XP1"), "given twice");
+    expect_no_poses(kDataList.substr(0, kDataList.find("z 610")), "does not end");
+    expect_no_poses(kDataList.substr(0, kDataList.find("DECL E6POS")) + "ENDDAT\n", "joints alone");
+    expect_no_poses("DEFDAT D\nENDDAT\n", "declares no E6POS");
+}
+
+const std::string kModule = R"(%%%
+  VERSION:1
+%%%
+MODULE Door
+    ! robtarget old:=[[0,0,0],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+    CONST jointtarget home:=[[0,0,0,0,90,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+    CONST robtarget S1:=[[800,-50,600],[0.70710678,0,0,0.70710678],
+        [0,-1,0,1],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]];
+    LOCAL PERS robtarget s2:=[[820.0,10,610],[0.965925826,0,0,-0.258819045],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+    PROC go(robtarget where)
+        MoveL where,v100,fine,tool0;
+    ENDPROC
+ENDMODULE
+)";
+
+TEST(PoseTable, PointsOfAnAbbModule) {
+    expect_poses(kModule);
+    const auto table = parse_pose_table(kModule, "door.mod", {});
+    ASSERT_TRUE(table) << table.error().sentence();
+    EXPECT_THAT(table->names.front().cells, testing::ElementsAre("s1", "s2"));
+    const std::string rest = "[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]";
+    const std::string array = "MODULE M\nCONST robtarget p{2}:=[[[800,-50,600],[0.70710678,0,0,0.70710678]," +
+                              rest + ",\n[[820,10,610],[0.965925826,0,0,-0.258819045]," + rest +
+                              "];\nENDMODULE\n";
+    expect_poses(array);
+    EXPECT_THAT(parse_pose_table(array, "m", {})->names.front().cells, testing::ElementsAre("p{1}", "p{2}"));
+
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string text = kModule;
+        text.replace(text.find(from), from.size(), to);
+        return text;
+    };
+    expect_no_poses(with("[0.70710678,0,0,0.70710678]", "[0,0,0,0]"), "line 7");
+    expect_no_poses(with("[0.70710678,0,0,0.70710678]", "[0.7,0,0]"), "is not [[x,y,z]");
+    expect_no_poses(with("[800,-50,600]", "[800,-50,height]"), "no number");
+    expect_no_poses(with("s2:=", "S1:="), "given twice");
+    expect_no_poses(kModule.substr(0, kModule.find(",610]")), "does not end");
+    expect_no_poses(
+        "MODULE M\nCONST jointtarget h:=[[0,0,0,0,90,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\nVAR robtarget "
+        "here;\nENDMODULE\n",
+        "joints alone");
+}
+
 }  // namespace
 }  // namespace seamwright

@@ -90,12 +90,12 @@ TEST_F(Push, WritesReadsBackAndRecords) {
 }
 
 TEST_F(Push, MismatchIsAnAlarmAndRestores) {
-    for (const auto& [mm, deg] : {std::pair(2e-3, 0.0), std::pair(0.0, 2e-4), std::pair(100.0, 0.0)}) {
+    for (const auto& off : {std::pair(2e-3, 0.0), std::pair(0.0, 2e-4), std::pair(100.0, 0.0)}) {
         frame = old_frame;
         log.clear();
         writes = 0;
-        store_frames([this, mm, deg](int n, const Pose& pose) -> Expected<void> {
-            frame = n == 1 ? shifted(pose, mm, deg) : pose;
+        store_frames([this, off](int n, const Pose& pose) -> Expected<void> {
+            frame = n == 1 ? shifted(pose, off.first, off.second) : pose;
             return {};
         });
         const PushRecord record = push();

@@ -275,7 +275,8 @@ void add_import(CommandLine& line) {
         ->type_name("Z");
     command
         ->add_option("--poses", a->layout.poses,
-                     "All poses in one file: CSV by name or by order, 4x4 matrices, FANUC .ls, JSON")
+                     "All poses in one file: CSV by name or by order, 4x4 matrices, JSON, or the points of a "
+                     "program: KUKA .dat, ABB .mod, FANUC .ls")
         ->type_name("FILE");
     command
         ->add_option("--pose-convention", a->layout.pose.convention,

@@ -36,7 +36,11 @@ json modes_json(const RegionModes& region) {
     for (const ElasticMode& mode : m.modes) modes.push_back(mode_json(m, mode));
     for (const LearntRun& run : region.learnt_from)
         runs.push_back({{"run", run.run}, {"part", run.part_id}, {"utc", run.utc}});
-    for (const ElasticSpot& s : m.spots) common[s.id] = {s.common_mm.x(), s.common_mm.y(), s.common_mm.z()};
+    json noise = json::object();
+    for (const ElasticSpot& s : m.spots) {
+        common[s.id] = {s.common_mm.x(), s.common_mm.y(), s.common_mm.z()};
+        noise[s.id] = m.noise_factor * s.noise_factor;
+    }
     return {{"region", region.id},
             {"on", region.on},
             {"learnt_utc", region.learnt_utc},
@@ -45,6 +49,7 @@ json modes_json(const RegionModes& region) {
             {"message", m.message.english()},
             {"parts", m.parts},
             {"noise_factor", m.noise_factor},
+            {"noise_factor_of_spots", noise},
             {"hold_out_gain", m.gain},
             {"hold_out_gain_sigma", m.gain_sigma},
             {"modes", modes},
@@ -69,7 +74,12 @@ std::string modes_text(const RegionModes& region) {
             text += fmt::format("    {:<8} X {:+.3f}  Y {:+.3f}  Z {:+.3f}\n", m.spots[n].id,
                                 mode.shape[n].x(), mode.shape[n].y(), mode.shape[n].z());
     }
-    return text + fmt::format("scatter left: {:.2f} times the stated sigma\n", m.noise_factor);
+    text += fmt::format("scatter left: {:.2f} times the stated sigma", m.noise_factor);
+    constexpr double kNotable = 1.5;  // times that of all spots
+    for (const ElasticSpot& s : m.spots)
+        if (s.noise_factor > kNotable)
+            text += fmt::format(", {} {:.2f}", s.id, m.noise_factor * s.noise_factor);
+    return text + "\n";
 }
 
 Answer show(const Project& project, const std::string& region) {

@@ -159,7 +159,8 @@ double worst_in_sigmas(const CameraResult& r, const plain::Lens& lens) {
 
 TEST(CameraCalibration, APlateThatIsNotAsStatedServesWithinItsSigmasOrNotAtAll) {
     for (unsigned seed = 1; seed <= 6; ++seed)
-        for (const auto& [bow_mm, stretch] : {std::pair{0.1, 0.0}, {0.3, 0.0}, {1.0, 0.0}, {0.0, 0.005}}) {
+        for (const auto& plate : {std::pair{0.1, 0.0}, {0.3, 0.0}, {1.0, 0.0}, {0.0, 0.005}}) {
+            const double bow_mm = plate.first, stretch = plate.second;
             plain::Dice dice(seed);
             const plain::Lens lens = plain::any_lens(dice);
             const auto shape = [&](const plain::Vec3& p) {

@@ -1,4 +1,4 @@
-#include "devices/robot_path/tokens.h"
+#include "devices/robot_path/words/tokens.h"
 
 #include <fmt/format.h>
 

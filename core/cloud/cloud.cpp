@@ -13,11 +13,18 @@ constexpr float kNoDirection = 1e-6F;      // length of a mean of directions tha
 constexpr double kSmallestCell_mm = 1e-6;  // where a cloud is thinned
 constexpr double kMostCellsAlong = 2e6;    // a cloud's longest side, so that they have their 21 bits
 
-// Cells are counted from the cloud's lower corner; 21 bits a coordinate.
-std::uint64_t cell_of(const Eigen::Vector3d& p, const Eigen::Vector3d& corner, double cell_mm) {
-    const Eigen::Array3d c = ((p - corner).array() / cell_mm).floor().max(0.0).min(kLastCell);
-    return static_cast<std::uint64_t>(c.x()) | static_cast<std::uint64_t>(c.y()) << 21 |
-           static_cast<std::uint64_t>(c.z()) << 42;
+// Cells are counted from the cloud's lower corner; 21 bits a coordinate. The last bit is the side from which a point was seen: the
+// mean of both faces of a sheet lies on neither.
+std::uint64_t cell_of(const Cloud& cloud, std::size_t i, const Eigen::Vector3d& corner, double cell_mm) {
+    const Eigen::Array3d c = ((cloud.points[i] - corner).array() / cell_mm).floor().max(0.0).min(kLastCell);
+    std::uint64_t cell = static_cast<std::uint64_t>(c.x()) | static_cast<std::uint64_t>(c.y()) << 21 |
+                         static_cast<std::uint64_t>(c.z()) << 42;
+    if (cloud.has_towards()) {
+        Eigen::Index most = 0;
+        cloud.towards[i].cwiseAbs().maxCoeff(&most);
+        cell |= static_cast<std::uint64_t>(cloud.towards[i][most] < 0) << 63;
+    }
+    return cell;
 }
 
 struct Mixer {
@@ -30,8 +37,8 @@ struct Mixer {
 std::size_t cells_in(const Cloud& cloud, const Eigen::Vector3d& corner, double cell_mm, std::size_t most) {
     std::unordered_map<std::uint64_t, char, Mixer> seen;
     seen.reserve(std::min(cloud.size(), 2 * most));
-    for (const Eigen::Vector3d& p : cloud.points) {
-        seen.emplace(cell_of(p, corner, cell_mm), 0);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        seen.emplace(cell_of(cloud, i, corner, cell_mm), 0);
         if (seen.size() > most) break;
     }
     return seen.size();
@@ -93,7 +100,7 @@ void append_profile(Cloud& cloud, const Profile& profile, const Pose& base_from_
     append(cloud, more);
 }
 
-Cloud voxel_grid(const Cloud& cloud, double cell_mm) {
+Cloud voxel_grid(const Cloud& cloud, double cell_mm, std::vector<std::uint32_t>* counts) {
     Cloud out;
     if (cloud.empty()) return out;
     const Eigen::Vector3d corner = cloud.box().min();
@@ -102,7 +109,7 @@ Cloud voxel_grid(const Cloud& cloud, double cell_mm) {
     const bool normals = cloud.has_normals(), towards = cloud.has_towards(), sigma = cloud.has_sigma();
     for (std::size_t i = 0; i < cloud.size(); ++i) {
         const auto [at, fresh] =
-            slot.emplace(cell_of(cloud.points[i], corner, cell_mm), static_cast<std::uint32_t>(out.size()));
+            slot.emplace(cell_of(cloud, i, corner, cell_mm), static_cast<std::uint32_t>(out.size()));
         if (fresh) {
             out.points.emplace_back(Eigen::Vector3d::Zero());
             if (normals) out.normals.emplace_back(Eigen::Vector3f::Zero());
@@ -131,18 +138,22 @@ Cloud voxel_grid(const Cloud& cloud, double cell_mm) {
         if (towards) unit(out.towards[s]);
         if (sigma) out.sigma_mm[s] = std::sqrt(out.sigma_mm[s]) / static_cast<float>(count[s]);
     }
+    if (counts) *counts = std::move(count);
     return out;
 }
 
-Cloud thinned(const Cloud& cloud, std::size_t most) {
-    if (cloud.size() <= most || most == 0) return cloud;
+Cloud thinned(const Cloud& cloud, std::size_t most, std::vector<std::uint32_t>* counts) {
+    if (cloud.size() <= most || most == 0) {
+        if (counts) counts->assign(cloud.size(), 1);
+        return cloud;
+    }
     const Eigen::AlignedBox3d box = cloud.box();
     double cell = std::max(box.sizes().maxCoeff(), kSmallestCell_mm);
     // The smallest cell of the series that does not go beyond `most`.
     while (cells_in(cloud, box.min(), cell / std::sqrt(2.0), most) <= most &&
            cell > box.sizes().maxCoeff() / kMostCellsAlong)
         cell /= std::sqrt(2.0);
-    return voxel_grid(cloud, cell);
+    return voxel_grid(cloud, cell, counts);
 }
 
 }  // namespace seamwright

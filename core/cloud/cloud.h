@@ -6,6 +6,7 @@
 // points have in common (the part's form, the robot's path) is no noise and is estimated by fit.h.
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -39,12 +40,13 @@ void append(Cloud& cloud, const Cloud& more);
 // a filtered profile, its outliers are left out. sigma_mm 0: not stated.
 void append_profile(Cloud& cloud, const Profile& profile, const Pose& base_from_sensor, double sigma_mm = 0);
 
-// One point a cell of a grid of cubes: the mean of what lies in it, sigma that of a mean of independent points. In
-// the order of the cells' first points. cell_mm > 0.
-Cloud voxel_grid(const Cloud& cloud, double cell_mm);
+// One point a cell of a grid of cubes: the mean of what lies in it, sigma that of a mean of independent points; two where it
+// was seen from opposite sides (towards). In the order of the cells' first points. cell_mm > 0.
+// `counts`: of how many points each is the mean.
+Cloud voxel_grid(const Cloud& cloud, double cell_mm, std::vector<std::uint32_t>* counts = nullptr);
 // The same with the smallest cell of a halving series that leaves at most `most` points; the cloud itself where it
 // has no more.
-Cloud thinned(const Cloud& cloud, std::size_t most);
+Cloud thinned(const Cloud& cloud, std::size_t most, std::vector<std::uint32_t>* counts = nullptr);
 
 // Statistical outliers (Rusu, Semantic 3D Object Maps, 2010; PCL's filter): a point whose mean distance to its
 // `neighbours` nearest exceeds the cloud's mean of it by `ratio` standard deviations. True: keep. A cloud of fewer

@@ -65,7 +65,7 @@ class Fit {
   public:
     Fit(const Cloud& cloud, const Surface& surface, const FitOptions& options)
         : surface_(surface), options_(options), size_(surface.size_mm()) {
-        levels_.fine = thinned(cloud, 30000);
+        levels_.fine = thinned(cloud, 30000, &counts_);
         if (!levels_.fine.has_towards() && levels_.fine.has_normals()) {
             levels_.fine.towards = levels_.fine.normals;
             by_normals_ = true;
@@ -172,12 +172,24 @@ class Fit {
         out_.gate_mm = settled_.gate_mm;
     }
 
+    // By points, not by area: the table around a small part is large.
+    double share_on_part() const {
+        constexpr std::size_t kAsked = 4000;
+        std::vector<std::size_t> asked;
+        const std::size_t stride = 1 + (levels_.fine.size() - 1) / kAsked;
+        for (std::size_t i = 0; i < levels_.fine.size(); i += stride) asked.push_back(i);
+        const std::vector<double> off =
+            distances(picked(levels_.fine, asked), surface_, out_.base_from_part, 2 * out_.gate_mm, facing_);
+        double near = 0, all = 0;
+        for (std::size_t k = 0; k < asked.size(); ++k) {
+            all += counts_[asked[k]];
+            near += off[k] < out_.gate_mm ? counts_[asked[k]] : 0;
+        }
+        return near / all;
+    }
+
     bool on_the_part() {
-        std::size_t near = 0;
-        for (const double d :
-             distances(levels_.judges, surface_, out_.base_from_part, 2 * out_.gate_mm, facing_))
-            near += d < out_.gate_mm;
-        out_.share_on_part = static_cast<double>(near) / static_cast<double>(levels_.judges.size());
+        out_.share_on_part = share_on_part();
         out_.points_used = settled_.system.matched;
         if (!within_start(out_.base_from_part, surface_, options_))
             return refuse(FitStatus::no_fit,
@@ -403,6 +415,7 @@ class Fit {
     double size_ = 0, gate_ = 0, floor_ = 0;
     bool facing_ = false, by_normals_ = false;
     Levels levels_;
+    std::vector<std::uint32_t> counts_;  // of the scan's points in each of levels_.fine
     Refined settled_;
     Pose rigid_ = Pose::Identity();                            // before the form's model moved it
     Pose few_ = Pose::Identity(), judged_ = Pose::Identity();  // the same place as fewer points have it

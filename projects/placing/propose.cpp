@@ -81,7 +81,7 @@ std::optional<ContourCurve> curve_at(const EdgeChain& chain, const Attitude& a,
 
 // The region's spots as candidates, each a place of its own.
 Expected<PlacingTask> task_of(const Project& project, const Region& region,
-                              const std::vector<BeadPoint>& bead) {
+                              const std::vector<TaughtBeadPoint>& bead) {
     PlacingTask task;
     const std::vector<SpotObservation> planned = planned_observations(project, region);
     if (planned.size() != region.spot_ids.size())
@@ -90,7 +90,7 @@ Expected<PlacingTask> task_of(const Project& project, const Region& region,
         task.candidates.push_back(
             {planned[i], travel_window_mm(*find_spot(project, planned[i].id)), static_cast<int>(i)});
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    for (const BeadPoint& p : bead) middle += p.point_mm / static_cast<double>(bead.size());
+    for (const TaughtBeadPoint& p : bead) middle += p.point_mm / static_cast<double>(bead.size());
     task.bead = bead;
     task.displacements = required_displacements(project.requirements, middle);
     task.options = planned_options(project, region);
@@ -321,7 +321,7 @@ class Proposer {
 }  // namespace
 
 Expected<PlacedSet> judge_spots(const Project& project, const Region& region,
-                                const std::vector<BeadPoint>& bead) {
+                                const std::vector<TaughtBeadPoint>& bead) {
     SEAM_TRY(auto task, task_of(project, region, bead));
     std::vector<std::size_t> all(task.candidates.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
@@ -329,13 +329,14 @@ Expected<PlacedSet> judge_spots(const Project& project, const Region& region,
     return placing.judge(all);
 }
 
-Expected<std::vector<BeadPoint>> bead_of(const Drawing& drawing, const std::string& edge, double step_mm) {
+Expected<std::vector<TaughtBeadPoint>> bead_of(const Drawing& drawing, const std::string& edge,
+                                               double step_mm) {
     if (!(step_mm >= 1 && step_mm <= 1000))
         return usage_error("the step along the bead is not from 1 to 1000 mm");
     SEAM_TRY(auto chain, tangent_chain(drawing, edge));
     const auto [from, to] = chain.arcs_of(drawing, edge);
     const int n = std::max(2, static_cast<int>((to - from) / step_mm) + 1);
-    std::vector<BeadPoint> bead;
+    std::vector<TaughtBeadPoint> bead;
     for (int i = 0; i < n; ++i) {
         const DrawingPoint p = chain.at(from + (to - from) * (i + 0.5) / n);
         const Eigen::Vector3d normal = middle_normal(p);

@@ -62,7 +62,7 @@ struct Proposal {
     double bound_mm = 0;           // no set of as many spots among these candidates has a smaller 3 sigma
     double bound_of_fewer_mm = 0;  // the same for one spot less; 0: there is none
     std::vector<double> along_mm;  // 3 sigma at every point of the bead
-    std::vector<BeadPoint> bead;
+    std::vector<TaughtBeadPoint> bead;
     int places = 0, candidates = 0, tried = 0;  // tried: attitudes; candidates: those that see something
     double sigma_forecast_mm = 0;  // as the safety gate will judge it (forecast.h), one standard deviation
     std::shared_ptr<const Looked> looked = nullptr;
@@ -86,9 +86,10 @@ Expected<Proposal> move_proposed(const Proposal& proposal, const std::string& sp
 // The same measure of a region's spots as they are: 3 sigma across the bead at its worst point, and with the worst spot
 // lost. Error: what SpotPlacing refuses, a spot that cannot be planned.
 Expected<PlacedSet> judge_spots(const Project& project, const Region& region,
-                                const std::vector<BeadPoint>& bead);
+                                const std::vector<TaughtBeadPoint>& bead);
 
 // The bead as it is judged: the named edge in steps.
-Expected<std::vector<BeadPoint>> bead_of(const Drawing& drawing, const std::string& edge, double step_mm);
+Expected<std::vector<TaughtBeadPoint>> bead_of(const Drawing& drawing, const std::string& edge,
+                                               double step_mm);
 
 }  // namespace seamwright

@@ -84,8 +84,8 @@ Project sample_project(unsigned seed) {
     r.sigma_limit_mm = 0.2;
     r.frame_name = "BASE_DATA[7]";
     r.base_from_frame = make.pose();
-    r.offsets = {{1, "2024-05-01T12:00:00.000Z", "cmm.csv", {0.1, -1.0 / 3, 0}, {}},
-                 {2, "2024-05-02T12:00:00.000Z", "tracker.csv", {0, 0, 0.25}, {}}};
+    r.offsets = {{1, "2024-05-01T12:00:00.000Z", "cmm.csv", {0.1, -1.0 / 3, 0}},
+                 {2, "2024-05-02T12:00:00.000Z", "tracker.csv", {0, 0, 0.25}}};
     r.offsets[1].covariance_mm2(2, 2) = 1e-4;
     r.offset_switches = {1, 0, 2};
     p.regions.push_back(r);

@@ -16,13 +16,13 @@ namespace {
 
 TEST(Capability, FollowsItsFormulae) {
     // 1..5: mean 3, s = sqrt(2.5).
-    const Capability c = capability({1, 2, 3, 4, 5, std::numeric_limits<double>::quiet_NaN()}, {0.0, 9.0});
+    const ShownCapability c = capability({1, 2, 3, 4, 5, std::numeric_limits<double>::quiet_NaN()}, {0.0, 9.0});
     EXPECT_EQ(c.count, 5);
     EXPECT_DOUBLE_EQ(c.mean, 3);
     EXPECT_NEAR(c.standard_deviation, std::sqrt(2.5), 1e-12);
     EXPECT_NEAR(*c.cp, 9 / (6 * std::sqrt(2.5)), 1e-12);
     EXPECT_NEAR(*c.cpk, 3 / (3 * std::sqrt(2.5)), 1e-12);
-    const Capability one_sided = capability({1, 2, 3}, {std::nullopt, 5.0});
+    const ShownCapability one_sided = capability({1, 2, 3}, {std::nullopt, 5.0});
     EXPECT_FALSE(one_sided.cp);
     EXPECT_NEAR(*one_sided.cpk, 1, 1e-12);
     EXPECT_FALSE(capability({2, 2, 2}, {0.0, 3.0}).cpk);

@@ -5,8 +5,8 @@
 
 namespace seamwright {
 
-Capability capability(const std::vector<double>& values, const TrendLimits& limits) {
-    Capability result;
+ShownCapability capability(const std::vector<double>& values, const TrendLimits& limits) {
+    ShownCapability result;
     double sum = 0;
     for (const double v : values)
         if (std::isfinite(v)) {

@@ -41,13 +41,13 @@ struct Histogram::Impl {
     QString name, unit;
     std::vector<TrendSeries> series;
     TrendLimits limits;
-    std::vector<Capability> shown;  // one a series
+    std::vector<ShownCapability> shown;  // one a series
 
     void rebuild();
-    QString words(const Capability& of) const;
+    QString words(const ShownCapability& of) const;
 };
 
-QString Histogram::Impl::words(const Capability& of) const {
+QString Histogram::Impl::words(const ShownCapability& of) const {
     if (of.count < 2) return Histogram::tr("fewer than two values");
     QString text = Histogram::tr("n %1   mean %2   s %3 %4")
                        .arg(of.count)
@@ -112,7 +112,7 @@ void Histogram::Impl::rebuild() {
         highest = std::max(highest, *std::max_element(counts.begin(), counts.end()));
 
         // The normal curve that Cp and Cpk assume, for the eye to judge.
-        const Capability& of = shown[k];
+        const ShownCapability& of = shown[k];
         if (!(of.standard_deviation > 0)) continue;
         auto* curve = canvas->addGraph();
         curve->setPen(QPen(series.size() == 1 ? style::quiet_text(palette) : colour, 1.5));
@@ -174,8 +174,8 @@ void Histogram::set_data(const QString& title, const QString& unit, const std::v
     impl_->rebuild();
 }
 
-const Capability& Histogram::shown(std::size_t series) const {
-    static const Capability none;
+const ShownCapability& Histogram::shown(std::size_t series) const {
+    static const ShownCapability none;
     return series < impl_->shown.size() ? impl_->shown[series] : none;
 }
 

@@ -16,12 +16,12 @@ namespace seamwright {
 // normal process; a trend, two batches or outliers make both meaningless, and below about 50 values they
 // scatter by 10 % and more (standard deviation of Cp about Cp / sqrt(2 (n - 1))). With one limit only Cpk
 // exists. Non-finite values are left out.
-struct Capability {
+struct ShownCapability {
     int count = 0;
     double mean = 0, standard_deviation = 0;  // NaN with fewer than 1 / 2 values
     std::optional<double> cp, cpk;            // absent: a limit is missing, fewer than 2 values, or s = 0
 };
-Capability capability(const std::vector<double>& values, const TrendLimits& limits);
+ShownCapability capability(const std::vector<double>& values, const TrendLimits& limits);
 
 class Histogram : public QWidget {
     Q_OBJECT
@@ -36,7 +36,7 @@ class Histogram : public QWidget {
     // each part several times.
     void set_data(const QString& title, const QString& unit, const std::vector<TrendSeries>& series,
                   const TrendLimits& limits, bool of_process = true);
-    const Capability& shown(std::size_t series = 0) const;
+    const ShownCapability& shown(std::size_t series = 0) const;
     QSize sizeHint() const override { return {360, 220}; }
     QSize minimumSizeHint() const override { return {200, 140}; }
 

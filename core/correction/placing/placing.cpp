@@ -93,7 +93,7 @@ Expected<void> check(const PlacingTask& task) {
     if (task.displacements.empty()) return input_error("there is no displacement to judge at");
     if (!(task.three_sigma_mm > 0) || !std::isfinite(task.three_sigma_mm))
         return input_error("the wanted 3 sigma is not above 0 mm");
-    for (const BeadPoint& p : task.bead)
+    for (const TaughtBeadPoint& p : task.bead)
         if (!p.point_mm.allFinite() || std::abs(p.normal.norm() - 1) > kNotUnit ||
             std::abs(p.binormal.norm() - 1) > kNotUnit)
             return input_error("a point of the bead is not finite, or a direction there has not length 1");

@@ -33,13 +33,13 @@ struct PlacingCandidate {
 };
 
 // Work object, the part as taught; directions of unit length.
-struct BeadPoint {
+struct TaughtBeadPoint {
     Eigen::Vector3d point_mm, normal, binormal;
 };
 
 struct PlacingTask {
     std::vector<PlacingCandidate> candidates;
-    std::vector<BeadPoint> bead;
+    std::vector<TaughtBeadPoint> bead;
     std::vector<Displacement> displacements{Displacement{}};  // where the bead must be known
     CorrectionOptions options;
     double three_sigma_mm = 0.1;  // across the bead, wanted

@@ -224,7 +224,7 @@ void ContourSheets::divide(const Profile& profile) {
         int before = first, after = i;
         while (before > 0 && mixed_[before - 1]) --before;
         while (after + 1 < n && mixed_[after + 1]) ++after;
-        whole_.push_back({first, i - first + 1, SheetEnd::open, SheetEnd::open,
+        whole_.push_back({first, i - first + 1, ContourSheetEnd::open, ContourSheetEnd::open,
                           before < first ? line_[before] : -1, after > i ? line_[after] : -1});
         first = i + 1;
     }
@@ -252,21 +252,21 @@ void ContourSheets::judge_ends(const Profile& profile, const SensorField& field)
                all_x_[i] < field.x_min + beside || all_x_[i] > field.x_max - beside;
     };
     for (std::size_t s = 0; s < whole_.size(); ++s) {
-        Sheet& sheet = whole_[s];
+        ContourSheet& sheet = whole_[s];
         const int first = sheet.first, last = first + sheet.count - 1;
-        if (at_rim(first)) sheet.before = SheetEnd::field;
-        if (at_rim(last)) sheet.after = SheetEnd::field;
+        if (at_rim(first)) sheet.before = ContourSheetEnd::field;
+        if (at_rim(last)) sheet.after = ContourSheetEnd::field;
         // Fragments may lie between a sheet and what hides it.
         const auto hides = [&](int end, int place) {
             const double rise = all_z_[end] - all_z_[place];
             return rise > kCoverSigma * noise_ + pitch_.along_x &&
                    std::abs(all_x_[end] - all_x_[place]) <= kShadow * rise + kRimLines * pitch_.along_x;
         };
-        for (std::size_t t = s; t-- > 0 && s - t <= kFragments && sheet.before == SheetEnd::open;)
-            if (hides(whole_[t].first + whole_[t].count - 1, first)) sheet.before = SheetEnd::covered;
-        for (std::size_t t = s + 1; t < whole_.size() && t - s <= kFragments && sheet.after == SheetEnd::open;
-             ++t)
-            if (hides(whole_[t].first, last)) sheet.after = SheetEnd::covered;
+        for (std::size_t t = s; t-- > 0 && s - t <= kFragments && sheet.before == ContourSheetEnd::open;)
+            if (hides(whole_[t].first + whole_[t].count - 1, first)) sheet.before = ContourSheetEnd::covered;
+        for (std::size_t t = s + 1;
+             t < whole_.size() && t - s <= kFragments && sheet.after == ContourSheetEnd::open; ++t)
+            if (hides(whole_[t].first, last)) sheet.after = ContourSheetEnd::covered;
     }
 }
 
@@ -300,20 +300,20 @@ void ContourSheets::gather(const Profile& profile, const FeatureWindow& window, 
     x_.clear();
     z_.clear();
     sheets_.clear();
-    for (const Sheet& whole : whole_) {
+    for (const ContourSheet& whole : whole_) {
         bool before_inside = false;
         for (int i = whole.first; i < whole.first + whole.count; ++i) {
             const bool inside = window.contains(all_x_[i], all_z_[i]);
             if (inside) {
                 if (!before_inside)
                     sheets_.push_back({static_cast<int>(x_.size()), 0,
-                                       i == whole.first ? whole.before : SheetEnd::window, whole.after,
+                                       i == whole.first ? whole.before : ContourSheetEnd::window, whole.after,
                                        i == whole.first ? whole.mixed_before : -1, whole.mixed_after});
                 x_.push_back(all_x_[i]);
                 z_.push_back(all_z_[i]);
                 ++sheets_.back().count;
             } else if (before_inside) {
-                sheets_.back().after = SheetEnd::window;
+                sheets_.back().after = ContourSheetEnd::window;
                 sheets_.back().mixed_after = -1;
             }
             before_inside = inside;

@@ -29,16 +29,16 @@
 namespace seamwright {
 
 // How a sheet ends.
-enum class SheetEnd {
+enum class ContourSheetEnd {
     open,     // the surface stops there, as far as a profile can tell
     window,   // it runs on beyond the search window
     field,    // it leaves the sensor's field: its end is not seen
     covered,  // it runs under a higher one
 };
 
-struct Sheet {
+struct ContourSheet {
     int first, count;  // in x, z: sensor order
-    SheetEnd before, after;
+    ContourSheetEnd before, after;
     // The profile's line of the farthest point that stands in a step beside the end, on neither sheet; -1: none does.
     int mixed_before = -1, mixed_after = -1;
 };
@@ -59,7 +59,7 @@ class ContourSheets {
 
     const std::vector<double>& x() const { return x_; }
     const std::vector<double>& z() const { return z_; }
-    const std::vector<Sheet>& sheets() const { return sheets_; }
+    const std::vector<ContourSheet>& sheets() const { return sheets_; }
     double noise_mm() const { return noise_; }
     const ProfileNoise& noise() const { return profile_noise_; }  // without what the profile's shape adds
 
@@ -95,7 +95,7 @@ class ContourSheets {
     std::vector<double> all_x_, all_z_, scratch_;
     std::vector<int> line_;  // of every usable point
     std::vector<std::int32_t> segment_;
-    std::vector<Sheet> whole_;           // over the whole profile
+    std::vector<ContourSheet> whole_;    // over the whole profile
     std::vector<std::uint8_t> cut_;      // [points] a step lies behind the point
     std::vector<std::uint8_t> mixed_;    // [points] stands in a step
     using Sums = std::array<double, 9>;  // of k, x, z, k k, k x, k z, x x, x z, z z; k the line
@@ -105,7 +105,7 @@ class ContourSheets {
     std::vector<Jump> jumps_;     // behind every point
     std::vector<double> height_;  // of the steps, per point
     std::vector<double> x_, z_;
-    std::vector<Sheet> sheets_;
+    std::vector<ContourSheet> sheets_;
     ContourPitch pitch_;
     double noise_ = 0;
     ProfileNoise profile_noise_;

@@ -18,20 +18,20 @@ struct EndsInWindow {
     double outward(int i) const {
         return (rule.side == EndSide::right ? 1 : -1) * sheets.x()[std::size_t(i)];
     }
-    bool at_last(const Sheet& s) const { return outward(s.first + s.count - 1) >= outward(s.first); }
-    int end(const Sheet& s) const { return at_last(s) ? s.first + s.count - 1 : s.first; }
-    double reach(const Sheet& s) const { return outward(end(s)); }
-    SheetEnd how(const Sheet& s) const { return at_last(s) ? s.after : s.before; }
-    bool counts(const Sheet& s) const { return s.count >= rule.minimum_points; }
-    Eigen::Vector2d place(const Sheet& s) const {
+    bool at_last(const ContourSheet& s) const { return outward(s.first + s.count - 1) >= outward(s.first); }
+    int end(const ContourSheet& s) const { return at_last(s) ? s.first + s.count - 1 : s.first; }
+    double reach(const ContourSheet& s) const { return outward(end(s)); }
+    ContourSheetEnd how(const ContourSheet& s) const { return at_last(s) ? s.after : s.before; }
+    bool counts(const ContourSheet& s) const { return s.count >= rule.minimum_points; }
+    Eigen::Vector2d place(const ContourSheet& s) const {
         const auto i = static_cast<std::size_t>(end(s));
         return {sheets.x()[i], sheets.z()[i]};
     }
-    double length(const Sheet& s) const {
+    double length(const ContourSheet& s) const {
         const auto a = static_cast<std::size_t>(s.first), b = a + static_cast<std::size_t>(s.count) - 1;
         return std::hypot(sheets.x()[b] - sheets.x()[a], sheets.z()[b] - sheets.z()[a]);
     }
-    Eigen::Vector2d middle(const Sheet& s) const {
+    Eigen::Vector2d middle(const ContourSheet& s) const {
         Eigen::Vector2d sum = Eigen::Vector2d::Zero();
         for (int i = s.first; i < s.first + s.count; ++i)
             sum += Eigen::Vector2d(sheets.x()[std::size_t(i)], sheets.z()[std::size_t(i)]);
@@ -40,7 +40,7 @@ struct EndsInWindow {
     // Across the direction that the sheets have in common, towards +z.
     Eigen::Vector2d up() const {
         double xx = 0, xz = 0, zz = 0;
-        for (const Sheet& s : sheets.sheets()) {
+        for (const ContourSheet& s : sheets.sheets()) {
             if (!counts(s)) continue;
             const Eigen::Vector2d m = middle(s);
             for (int i = s.first; i < s.first + s.count; ++i) {
@@ -57,8 +57,8 @@ struct EndsInWindow {
     std::string ambiguous(Feature& feature) const {
         feature.status = FeatureStatus::ambiguous;
         std::string places;
-        for (const Sheet& s : sheets.sheets()) {
-            if (!counts(s) || how(s) != SheetEnd::open) continue;
+        for (const ContourSheet& s : sheets.sheets()) {
+            if (!counts(s) || how(s) != ContourSheetEnd::open) continue;
             feature.rivals_mm.push_back(place(s));
             if (feature.rivals_mm.size() <= kMostNamed)
                 places += fmt::format("{}x {:.2f} z {:.2f}", places.empty() ? "" : ", ", place(s).x(),
@@ -69,14 +69,14 @@ struct EndsInWindow {
         return places;
     }
 
-    const Sheet* only(Feature& feature) const {
-        const Sheet *open = nullptr, *outside = nullptr, *any = nullptr;
+    const ContourSheet* only(Feature& feature) const {
+        const ContourSheet *open = nullptr, *outside = nullptr, *any = nullptr;
         int ends = 0;
-        for (const Sheet& s : sheets.sheets()) {
+        for (const ContourSheet& s : sheets.sheets()) {
             if (!counts(s)) continue;
             if (!any || reach(s) > reach(*any)) any = &s;
-            if (how(s) == SheetEnd::open) open = &s, ++ends;
-            if (how(s) == SheetEnd::field && (!outside || reach(s) > reach(*outside))) outside = &s;
+            if (how(s) == ContourSheetEnd::open) open = &s, ++ends;
+            if (how(s) == ContourSheetEnd::field && (!outside || reach(s) > reach(*outside))) outside = &s;
         }
         if (ends > 1) {
             feature.message = Text(
@@ -96,9 +96,9 @@ struct EndsInWindow {
     }
 
     template <class Value>
-    const Sheet* most(Value value, double margin, double share, const Sheet*& rival) const {
-        const Sheet *best = nullptr, *next = nullptr;
-        for (const Sheet& s : sheets.sheets()) {
+    const ContourSheet* most(Value value, double margin, double share, const ContourSheet*& rival) const {
+        const ContourSheet *best = nullptr, *next = nullptr;
+        for (const ContourSheet& s : sheets.sheets()) {
             if (!counts(s)) continue;
             if (!best || value(s) > value(*best))
                 next = best, best = &s;
@@ -109,16 +109,16 @@ struct EndsInWindow {
         return best;
     }
 
-    const Sheet* outermost() const {
-        const Sheet* found = nullptr;
+    const ContourSheet* outermost() const {
+        const ContourSheet* found = nullptr;
         double limit = std::numeric_limits<double>::infinity();
         for (int n = 0; n < rule.order; ++n) {
-            const Sheet* next = nullptr;
-            for (const Sheet& s : sheets.sheets()) {
+            const ContourSheet* next = nullptr;
+            for (const ContourSheet& s : sheets.sheets()) {
                 if (!counts(s) || !(reach(s) < limit)) continue;
                 // Which sheets the order counts: those that have an end. The first may be the one that has
                 // none.
-                if (rule.order > 1 && how(s) != SheetEnd::open) continue;
+                if (rule.order > 1 && how(s) != ContourSheetEnd::open) continue;
                 if (!next || reach(s) > reach(*next)) next = &s;
             }
             if (!next) return nullptr;
@@ -135,13 +135,13 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
     const EndsInWindow ends{sheets, rule};
     feature.status = FeatureStatus::not_found;
     int counted = 0;
-    for (const Sheet& s : sheets.sheets()) counted += ends.counts(s);
+    for (const ContourSheet& s : sheets.sheets()) counted += ends.counts(s);
     if (counted == 0) {
         feature.status = FeatureStatus::no_points;
         feature.message = Text("no segment with {} points in the window", rule.minimum_points);
         return std::nullopt;
     }
-    const Sheet *chosen = nullptr, *rival = nullptr;
+    const ContourSheet *chosen = nullptr, *rival = nullptr;
     switch (rule.of) {
         case EndOf::only:
             chosen = ends.only(feature);
@@ -152,7 +152,7 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
                 feature.message = Text("fewer than {} contours end on that side in the window", rule.order);
             break;
         case EndOf::longest:
-            chosen = ends.most([&](const Sheet& s) { return ends.length(s); }, 0, kNearlyAsLong, rival);
+            chosen = ends.most([&](const ContourSheet& s) { return ends.length(s); }, 0, kNearlyAsLong, rival);
             if (rival)
                 feature.message = Text(
                     "two contours are about equally long: {}; say which by the window or by the setting "
@@ -162,7 +162,7 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
         case EndOf::highest:
         case EndOf::lowest: {
             const Eigen::Vector2d up = ends.up() * (rule.of == EndOf::highest ? 1 : -1);
-            chosen = ends.most([&](const Sheet& s) { return up.dot(ends.middle(s)); },
+            chosen = ends.most([&](const ContourSheet& s) { return up.dot(ends.middle(s)); },
                                kAsHigh * sheets.noise_mm(), 1, rival);
             if (rival)
                 feature.message = Text(
@@ -173,22 +173,22 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
     }
     if (!chosen || rival) return std::nullopt;
     switch (ends.how(*chosen)) {
-        case SheetEnd::window:
+        case ContourSheetEnd::window:
             feature.message = "the contour runs on beyond the window on that side";
             return std::nullopt;
-        case SheetEnd::field:
+        case ContourSheetEnd::field:
             feature.message = Text(
                 "the contour leaves the sensor's field on that side at x = {:.2f} mm: its end is not seen",
                 ends.place(*chosen).x());
             return std::nullopt;
-        case SheetEnd::covered:
+        case ContourSheetEnd::covered:
             // Who says which sheet is meant takes its end as it is seen.
             if (rule.of != EndOf::only) break;
             feature.message =
                 Text("the contour runs under a higher one at x = {:.2f} mm: its end on that side is not seen",
                      ends.place(*chosen).x());
             return std::nullopt;
-        case SheetEnd::open:
+        case ContourSheetEnd::open:
             break;
     }
     return ChosenEnd{chosen->first, chosen->first + chosen->count - 1, ends.at_last(*chosen),

@@ -26,7 +26,7 @@ struct EndRule {
 struct ChosenEnd {
     int first, last;  // of the sheet's points
     bool at_last;
-    int mixed;  // line of the farthest point that stands in the step behind it (Sheet); -1: none
+    int mixed;  // line of the farthest point that stands in the step behind it (ContourSheet); -1: none
 };
 
 // nullopt with status, message and rivals set in `feature`:

@@ -78,7 +78,7 @@ TEST(Placing, SaysWhatTheForecastOfTheSameSpotsSays) {
             }
             const auto predicted = predicted_covariance(spots, task.options, d);
             ASSERT_TRUE(predicted);
-            for (const BeadPoint& b : task.bead)
+            for (const TaughtBeadPoint& b : task.bead)
                 for (const Eigen::Vector3d& n : {b.normal, b.binormal}) {
                     Vector6 a;
                     a << n, (d.workobject_from_movedworkobject.linear() * b.point_mm).cross(n);
@@ -149,7 +149,7 @@ TEST(Placing, IsTheSameInAnotherFrame) {
         turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = other.linear();
         c.spot.robot_covariance = turn * *c.spot.robot_covariance * turn.transpose();
     }
-    for (BeadPoint& b : turned.bead)
+    for (TaughtBeadPoint& b : turned.bead)
         b = {other * b.point_mm, other.linear() * b.normal, other.linear() * b.binormal};
     for (Displacement& d : turned.displacements)
         d.workobject_from_movedworkobject = other * d.workobject_from_movedworkobject * other.inverse();

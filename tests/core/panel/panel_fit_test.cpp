@@ -175,8 +175,8 @@ TEST(PanelFit, ResidualIsTheDeformationThatNoMotionRemoves) {
         }
     const Eigen::VectorXd left = d - j * least_squares(j, d).x;
     for (std::size_t n = 0; n < spots.size(); ++n) {
-        EXPECT_NEAR(fit->spots[n].residual_mm.x(), left[static_cast<Eigen::Index>(2 * n)], 0.005);
-        EXPECT_NEAR(fit->spots[n].residual_mm.z(), left[static_cast<Eigen::Index>(2 * n) + 1], 0.005);
+        EXPECT_NEAR(fit->spots[n].residual_mm.x(), left[static_cast<Eigen::Index>(2 * n)], 0.01);
+        EXPECT_NEAR(fit->spots[n].residual_mm.z(), left[static_cast<Eigen::Index>(2 * n) + 1], 0.01);
         EXPECT_NEAR(fit->spots[n].remaining.gap_mm, -fit->spots[n].residual_mm.x(), 1e-9);
         EXPECT_NEAR(fit->spots[n].remaining.flush_mm, fit->spots[n].residual_mm.z(), 1e-9);
     }

@@ -116,7 +116,7 @@ PlacedSet by_hand(const std::vector<std::string>& ids, const ProposeOptions& o) 
     PlacingTask task;
     task.bead = *bead_of(w.drawing, o.edge, o.bead_step_mm);
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    for (const BeadPoint& p : task.bead) middle += p.point_mm / static_cast<double>(task.bead.size());
+    for (const TaughtBeadPoint& p : task.bead) middle += p.point_mm / static_cast<double>(task.bead.size());
     const auto planned = planned_observations(project, region);
     for (std::size_t i = 0; i < planned.size(); ++i)
         task.candidates.push_back({planned[i], travel_window_mm(project.spots[i]), static_cast<int>(i)});

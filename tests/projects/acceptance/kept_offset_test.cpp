@@ -103,7 +103,7 @@ TEST(KeptOffsets, ActOnARunAndAreSaidInIt) {
     auto cell = make_fake_cell();
     cell->workobject_from_movedworkobject = make_pose(rotation_exp({0.006, -0.004, 0.009}), {3, -4, 2.5});
     Region& region = cell->project.regions[0];
-    region.offsets = {{1, "2024-05-01T12:00:00.000Z", "cmm", {0.1, -0.2, 0.3}, {}}};
+    region.offsets = {{1, "2024-05-01T12:00:00.000Z", "cmm", {0.1, -0.2, 0.3}}};
     region.offsets[0].covariance_mm2(1, 1) = 0.0004;
     region.offset_switches = {0, 1};
     Station station(ProjectFile::create(folder / "cell.seam", cell->project).value(), cell->project);

@@ -173,9 +173,7 @@ TEST_F(RunCommand, AnAcceptanceGoesOnAfterAKill) {
 }
 
 TEST_F(RunCommand, AKeptOffsetIsSaidWhereItActs) {
-    change([](Project& p) {
-        p.regions[0].offsets = {{1, "2024-05-01T12:00:00.000Z", "cmm", {0, 0, 0.05}, {}}};
-    });
+    change([](Project& p) { p.regions[0].offsets = {{1, "2024-05-01T12:00:00.000Z", "cmm", {0, 0, 0.05}}}; });
     const auto offset_of_run = [&] {
         const ProgramResult r = run({"run", file.string(), "--part", "CAR-2", "--json", "-"});
         const json answer = json::parse(r.out, nullptr, false);

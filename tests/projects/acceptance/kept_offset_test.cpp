@@ -38,7 +38,7 @@ Acceptance correlation(double offset, double scatter, int parts = 12, double slo
     auto made = correlation_study(values);
     EXPECT_TRUE(made) << made.error().sentence();
     a.correlation = *made;
-    a.source.offset.emplace(OffsetOfStudy{"inner", {0, 0, 1}, {}});
+    a.source.offset.emplace(OffsetOfStudy{"inner", {0, 0, 1}});
     return a;
 }
 
@@ -153,7 +153,7 @@ TEST(KeptOffsets, ActOnARunAndAreSaidInIt) {
 TEST(KeptOffsets, OneThatIsNoNumberStopsAtTheGate) {
     TemporaryFolder folder;
     auto cell = make_fake_cell();
-    cell->project.regions[0].offsets = {{1, "", "", {0, std::nan(""), 0}, {}}};
+    cell->project.regions[0].offsets = {{1, "", "", {0, std::nan(""), 0}}};
     cell->project.regions[0].offset_switches = {1};
     Station station(ProjectFile::create(folder / "cell.seam", cell->project).value(), cell->project);
     std::map<std::string, std::unique_ptr<ProfileSource>> sensors;

@@ -38,7 +38,7 @@ Acceptance correlation(double offset, double scatter, int parts = 12, double slo
     auto made = correlation_study(values);
     EXPECT_TRUE(made) << made.error().sentence();
     a.correlation = *made;
-    a.source.offset.emplace(OffsetOfStudy{"inner", {0, 0, 1}});
+    a.source.offset.emplace(OffsetOfStudy{"inner", {0, 0, 1}, {}});
     return a;
 }
 

@@ -20,8 +20,9 @@ struct Frame;
 struct RecordingLayout {
     ProfileLayout profile;
     PoseLayout pose;
-    std::string poses;  // table of all poses, absolute or in the folder; empty: poses.{csv,txt,dat,mod,ls,json} where
-                        // there is one, else a file beside each frame
+    std::string
+        poses;  // table of all poses, absolute or in the folder; empty: poses.{csv,txt,dat,mod,ls,json} where
+                // there is one, else a file beside each frame
     ImageChannel channel = ImageChannel::grey;
     // Points in space (PLY, PCD of a run's export) lie in the robot's base and are brought back into the
     // sensor's plane with it; absent: they are refused.

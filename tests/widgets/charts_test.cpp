@@ -16,7 +16,8 @@ namespace {
 
 TEST(Capability, FollowsItsFormulae) {
     // 1..5: mean 3, s = sqrt(2.5).
-    const ShownCapability c = capability({1, 2, 3, 4, 5, std::numeric_limits<double>::quiet_NaN()}, {0.0, 9.0});
+    const ShownCapability c =
+        capability({1, 2, 3, 4, 5, std::numeric_limits<double>::quiet_NaN()}, {0.0, 9.0});
     EXPECT_EQ(c.count, 5);
     EXPECT_DOUBLE_EQ(c.mean, 3);
     EXPECT_NEAR(c.standard_deviation, std::sqrt(2.5), 1e-12);

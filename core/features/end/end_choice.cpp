@@ -152,7 +152,8 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
                 feature.message = Text("fewer than {} contours end on that side in the window", rule.order);
             break;
         case EndOf::longest:
-            chosen = ends.most([&](const ContourSheet& s) { return ends.length(s); }, 0, kNearlyAsLong, rival);
+            chosen =
+                ends.most([&](const ContourSheet& s) { return ends.length(s); }, 0, kNearlyAsLong, rival);
             if (rival)
                 feature.message = Text(
                     "two contours are about equally long: {}; say which by the window or by the setting "

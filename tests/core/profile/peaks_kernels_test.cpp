@@ -32,7 +32,8 @@ bool same(const StripePeaks& a, const StripePeaks& b) {
 TEST(Peaks, KernelsAgreeBitForBitAndRowsAreColumnsTransposed) {
     std::mt19937 random(16);
     for (const int depth : {8, 12, 16}) {
-        for (const auto& size : std::vector<std::pair<int, int>>{{257, 131}, {64, 64}, {33, 200}, {700, 45}}) {
+        for (const auto& size :
+             std::vector<std::pair<int, int>>{{257, 131}, {64, 64}, {33, 200}, {700, 45}}) {
             const int width = size.first, height = size.second;
             Frame columns(width, height, depth, 5), rows(height, width, depth, 3);
             const double full = columns.image().full_scale();

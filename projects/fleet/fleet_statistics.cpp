@@ -61,7 +61,7 @@ double day_of(const pqxx::field& field) {
 struct Key {
     bool panel = false;
     std::string region, key, station, type;
-    auto operator<=>(const Key&) const = default;
+    auto operator<=>(const Key&) const = default;  // NOLINT(modernize-use-nullptr): no pointer is in it
 };
 
 // A day, an hour or what a time cuts of one, in which values may lie beyond limits.

@@ -279,7 +279,7 @@ class PageBreaks {
         format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
         table.setFormat(format);
     }
-    void heading(QTextBlock b) const {
+    void heading(const QTextBlock& b) const {
         const double at = std::fmod(layout_.blockBoundingRect(b).top(), page_px_) / page_px_;
         const int wanted = at > kLastThird ? kKeptBlocks : 1;
         bool away = false;

@@ -140,7 +140,7 @@ std::map<std::string, std::string> inline_frames(const std::vector<Token>& words
     for (std::size_t i = 0; i + 3 < words.size(); ++i) {
         if (words[i].text != "FDAT" || words[i + 1].kind != Token::Kind::name || words[i + 2].text != "=")
             continue;
-        Cursor cursor(std::span(words).subspan(i + 3));
+        Cursor cursor(std::span<const Token>{words}.subspan(i + 3));
         try {
             const auto value = program_path::read_expression(cursor, Dialect::krl);
             const auto base = number_of(component(*value, "BASE_NO")),
@@ -178,7 +178,7 @@ Expected<PoseTable> kuka_poses(std::string_view text, const std::string& where) 
         const bool point = typed || (value > name + 1 && arrays.contains(words[name].text));
         if (!point || word(value) != "=" || word(value + 1) != "{") continue;
         const std::string at = fmt::format("{}, line {}", where, words[name].line);
-        Cursor cursor(std::span(words).subspan(value + 1));
+        Cursor cursor(std::span<const Token>{words}.subspan(value + 1));
         program_path::ExprPtr record;
         try {
             record = program_path::read_expression(cursor, Dialect::krl);
@@ -262,7 +262,7 @@ Expected<PoseTable> abb_poses(std::string_view text, const std::string& where) {
             }
         if (value >= words.size() || words[value].text != ":=") continue;  // of a routine's parameters
         const std::string at = fmt::format("{}, line {}", where, words[i + 1].line);
-        Cursor cursor(std::span(words).subspan(value + 1));
+        Cursor cursor(std::span<const Token>{words}.subspan(value + 1));
         program_path::ExprPtr target;
         try {
             target = program_path::read_expression(cursor, Dialect::rapid);

@@ -128,6 +128,21 @@ std::optional<double> number_of(const Expr* e) {
     return e->text == "-" ? -*inner : *inner;
 }
 
+// What stands from the word `from` on, and the word behind it in `next`.
+Expected<program_path::ExprPtr> value_from(const std::vector<Token>& words, std::size_t from, Dialect dialect,
+                                           const std::string& name, const std::string& at,
+                                           std::size_t& next) {
+    Cursor cursor(std::span<const Token>{words}.subspan(from));
+    try {
+        auto value = program_path::read_expression(cursor, dialect);
+        next = from + cursor.at();
+        return value;
+    } catch (const Misread&) {
+        return input_error(Text("the position {} does not end", csv::shown(name)), at,
+                           "the file is cut short");
+    }
+}
+
 const Expr* component(const Expr& record, std::string_view name) {
     for (const auto& part : record.parts)
         if (part.name == name) return part.value.get();
@@ -178,14 +193,8 @@ Expected<PoseTable> kuka_poses(std::string_view text, const std::string& where) 
         const bool point = typed || (value > name + 1 && arrays.contains(words[name].text));
         if (!point || word(value) != "=" || word(value + 1) != "{") continue;
         const std::string at = fmt::format("{}, line {}", where, words[name].line);
-        Cursor cursor(std::span<const Token>{words}.subspan(value + 1));
-        program_path::ExprPtr record;
-        try {
-            record = program_path::read_expression(cursor, Dialect::krl);
-        } catch (const Misread&) {
-            return input_error(Text("the position {} does not end", csv::shown(shown)), at,
-                               "the file is cut short");
-        }
+        std::size_t next = 0;
+        SEAM_TRY(const auto record, value_from(words, value + 1, Dialect::krl, shown, at, next));
         std::array<double, 6> values{};
         const char* keys[] = {"X", "Y", "Z", "A", "B", "C"};
         for (std::size_t k = 0; k < 6; ++k) {
@@ -205,7 +214,7 @@ Expected<PoseTable> kuka_poses(std::string_view text, const std::string& where) 
         SEAM_TRY(const Pose pose, placed(rotation_from_kuka({values[3], values[4], values[5]}),
                                          {values[0], values[1], values[2]}, at));
         SEAM_OK(put(table, given, of_form ? shown.substr(1) : shown, pose, at));
-        i = value + cursor.at();
+        i = next - 1;
     }
     if (table.poses.empty())
         return input_error(
@@ -223,8 +232,13 @@ Expected<void> put_targets(PoseTable& table, std::set<std::string>& given, const
     };
     const Expr* first = list(&e, 1) ? e.parts[0].value.get() : nullptr;
     if (list(first, 1) && list(first->parts[0].value.get(), 0)) {
-        for (std::size_t i = 0; i < e.parts.size(); ++i)
-            SEAM_OK(put_targets(table, given, fmt::format("{}{{{}}}", name, i + 1), *e.parts[i].value, at));
+        for (std::size_t i = 0; i < e.parts.size(); ++i) {
+            const std::string one = fmt::format("{}{{{}}}", name, i + 1);
+            if (!e.parts[i].value)
+                return input_error(Text("the position {} is not [[x,y,z],[q1,q2,q3,q4],..]", csv::shown(one)),
+                                   at);
+            SEAM_OK(put_targets(table, given, one, *e.parts[i].value, at));
+        }
         return {};
     }
     std::vector<double> values;
@@ -262,16 +276,10 @@ Expected<PoseTable> abb_poses(std::string_view text, const std::string& where) {
             }
         if (value >= words.size() || words[value].text != ":=") continue;  // of a routine's parameters
         const std::string at = fmt::format("{}, line {}", where, words[i + 1].line);
-        Cursor cursor(std::span<const Token>{words}.subspan(value + 1));
-        program_path::ExprPtr target;
-        try {
-            target = program_path::read_expression(cursor, Dialect::rapid);
-        } catch (const Misread&) {
-            return input_error(Text("the position {} does not end", csv::shown(name)), at,
-                               "the file is cut short");
-        }
+        std::size_t next = 0;
+        SEAM_TRY(const auto target, value_from(words, value + 1, Dialect::rapid, name, at, next));
         SEAM_OK(put_targets(table, given, name, *target, at));
-        i = value + cursor.at();
+        i = next - 1;
     }
     if (table.poses.empty())
         return input_error(

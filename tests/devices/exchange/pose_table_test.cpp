@@ -285,6 +285,11 @@ TEST(PoseTable, PointsOfAnAbbModule) {
     expect_no_poses(with("[0.70710678,0,0,0.70710678]", "[0.7,0,0]"), "is not [[x,y,z]");
     expect_no_poses(with("[800,-50,600]", "[800,-50,height]"), "no number");
     expect_no_poses(with("s2:=", "S1:="), "given twice");
+    expect_no_poses(
+        "MODULE M\nCONST robtarget p{3}:=[[[800,-50,600],[1,0,0,0]],,[[1,2,3],[1,0,0,0]]];\nENDMODULE\n",
+        "p{2} is not");
+    expect_no_poses("MODULE M\nCONST robtarget p{2}:=[[[800,,600],[1,0,0,0]],[]];\nENDMODULE\n",
+                    "p{1} holds");
     expect_no_poses(kModule.substr(0, kModule.find(",610]")), "does not end");
     expect_no_poses(
         "MODULE M\nCONST jointtarget h:=[[0,0,0,0,90,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\nVAR robtarget "

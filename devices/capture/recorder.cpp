@@ -128,9 +128,8 @@ void Recorder::event(CaptureEvent event) {
 }
 
 void Recorder::write_loop() {
-    using Clock = std::chrono::steady_clock;
     const std::chrono::milliseconds interval(options_.flush_ms);
-    auto flushed = Clock::now();
+    auto flushed = std::chrono::steady_clock::now();
     for (bool last = false; !last;) {
         std::vector<Source*> all;
         {
@@ -139,8 +138,8 @@ void Recorder::write_loop() {
             last = finishing_;
             for (const auto& [id, source] : sources_) all.push_back(source.get());
         }
-        const bool flush = Clock::now() >= flushed + interval;
-        if (flush) flushed = Clock::now();
+        const bool flush = std::chrono::steady_clock::now() >= flushed + interval;
+        if (flush) flushed = std::chrono::steady_clock::now();
         // Half-full blocks go the way of the full ones, so that the order within a source holds.
         if (flush || last) {
             for (Source* source : all) {

@@ -10,8 +10,8 @@
 namespace seamwright::report {
 
 std::string svg_bars(const std::string& title, const std::vector<ShareBar>& bars, int width_px) {
-    constexpr double kRow = 22, kTop = 30, kNames = 200, kFigures = 150, kBottom = 8;
-    const double height = kTop + kRow * static_cast<double>(bars.size()) + kBottom;
+    constexpr double kRow = 22, kTitle = 30, kNames = 200, kFigures = 150, kMargin = 8;
+    const double height = kTitle + kRow * static_cast<double>(bars.size()) + kMargin;
     const double length = std::max(50.0, width_px - kNames - kFigures);
     std::string out = fmt::format(
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0} {1:.0f}' width='{0}' height='{1:.0f}' "
@@ -20,7 +20,7 @@ std::string svg_bars(const std::string& title, const std::vector<ShareBar>& bars
         "<text x='12' y='18' font-weight='600' class='title'>{2}</text>",
         width_px, height, escape(title));
     auto it = std::back_inserter(out);
-    double top = kTop;
+    double top = kTitle;
     for (const ShareBar& bar : bars) {
         const double share = std::isfinite(bar.percent) ? std::clamp(bar.percent, 0.0, 100.0) : 0;
         fmt::format_to(it, "<text x='{:.0f}' y='{:.0f}' text-anchor='end'>{}</text>", kNames - 8, top + 14,

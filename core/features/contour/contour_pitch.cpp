@@ -19,12 +19,12 @@ bool ContourPitch::is_gap(double dx, double dz) const {
 
 bool ContourPitch::is_step(std::span<const double> x, std::span<const double> z, std::size_t at,
                            double sigma_mm) const {
-    constexpr double kLeast = 2.5, kLeastSigmas = 8, kLevel = 0.35;
+    constexpr double kLeastPitches = 2.5, kLeastSigmas = 8, kFlat = 0.35;
     if (at < 1 || at + 2 >= x.size()) return false;
     const double dx = x[at + 1] - x[at], rise = std::abs(z[at + 1] - z[at]);
-    return rise > kLeastSigmas * sigma_mm && std::hypot(dx, rise) > kLeast * distance &&
-           std::abs(dx) <= most_open() * along_x && std::abs(z[at] - z[at - 1]) < kLevel * rise &&
-           std::abs(z[at + 2] - z[at + 1]) < kLevel * rise;
+    return rise > kLeastSigmas * sigma_mm && std::hypot(dx, rise) > kLeastPitches * distance &&
+           std::abs(dx) <= most_open() * along_x && std::abs(z[at] - z[at - 1]) < kFlat * rise &&
+           std::abs(z[at + 2] - z[at + 1]) < kFlat * rise;
 }
 
 int ContourPitch::most_mixed() const {
@@ -36,10 +36,10 @@ int ContourPitch::most_mixed() const {
 double ContourPitch::ramp_misfit(std::span<const double> x, std::span<const double> z, std::size_t a,
                                  std::size_t b, double sigma_mm) const {
     constexpr std::size_t kSide = 4;
-    constexpr double kLeast = 3.5, kLeastSigmas = 10, kFlatter = 0.5, kMostSigmas = 2, kMostOfRise = 0.04;
+    constexpr double kLeastPitches = 3.5, kLeastSigmas = 10, kFlatter = 0.5, kMostSigmas = 2, kMostOfRise = 0.04;
     constexpr double kNone = std::numeric_limits<double>::infinity();
     if (a + 1 < kSide || b + kSide > x.size()) return kNone;
-    const double length = std::abs(x[b] - x[a]), least = std::max(kLeastSigmas * sigma_mm, kLeast * distance);
+    const double length = std::abs(x[b] - x[a]), least = std::max(kLeastSigmas * sigma_mm, kLeastPitches * distance);
     if (std::abs(z[b] - z[a]) < 0.5 * least || std::abs(length / along_x - most_mixed()) > 1.5) return kNone;
     // By the lines, which a mean goes by; by x where some of them are missing.
     const bool all_there = std::abs(length / along_x - double(b - a)) < 0.75;
@@ -88,13 +88,13 @@ int ContourPitch::drawn_out(std::span<const double> x, std::span<const double> z
 int ContourPitch::mixed(std::span<const double> x, std::span<const double> z, std::size_t at,
                         double sigma_mm) const {
     if (const int many = alike() > 1 ? drawn_out(x, z, at, sigma_mm) : 0; many > 0) return many;
-    constexpr double kLeast = 3.5, kLeastSigmas = 10, kLevel = 0.2;
+    constexpr double kLeastPitches = 3.5, kLeastSigmas = 10, kFlat = 0.2;
     for (std::size_t many = 1; many <= 2; ++many) {
         if (at < 3 || at + many + 2 >= x.size()) return 0;
         const std::size_t a = at - 1, b = at + many;
-        const double rise = z[b] - z[a], least = std::max(kLeastSigmas * sigma_mm, kLeast * distance);
+        const double rise = z[b] - z[a], least = std::max(kLeastSigmas * sigma_mm, kLeastPitches * distance);
         if (std::abs(rise) < least || std::abs(x[b] - x[a]) > (1.5 + double(many)) * along_x) continue;
-        const double level = kLevel * std::abs(rise);
+        const double level = kFlat * std::abs(rise);
         if (std::abs(z[a] - z[a - 1]) > level || std::abs(z[a] - z[a - 2]) > level ||
             std::abs(z[b + 1] - z[b]) > level || std::abs(z[b + 2] - z[b]) > level)
             continue;

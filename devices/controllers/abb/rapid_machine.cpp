@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "devices/controllers/abb/rapid_system.h"
 #include "devices/controllers/abb/rapid_values.h"
 
 namespace seamwright::rapid {
@@ -14,8 +15,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Milliseconds = std::chrono::milliseconds;
 
-constexpr int kInstructionMicroseconds = 30, kNoOfRetry = 4, kErrExcrtymax = 1001, kErrWaitMaxtime = 1002,
-              kErrAlrdycnt = 1003, kDeepestCall = 100;
+constexpr int kInstructionMicroseconds = 30, kNoOfRetry = 4, kDeepestCall = 100;
 constexpr std::size_t kMostMessages = 200;
 
 struct StopTask {};    // the controller is switched off

@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <initializer_list>
 #include <limits>
+#include <random>
 
 #include "core/calibration/pose/hand_eye.h"
 #include "tests/core/calibration/independent/plain_world.h"
@@ -19,6 +23,16 @@ struct Case {
     int pairs;
     double robot_mm, robot_rad, corner_px;
 };
+
+// No two cells share their draws: one unlucky set would speak for all of them.
+unsigned seed_of(std::initializer_list<double> cell, int trial) {
+    std::vector<std::int64_t> words{trial};
+    for (const double v : cell) words.push_back(std::llround(1e6 * v));
+    std::seed_seq mixed(words.begin(), words.end());
+    std::array<unsigned, 1> seed{};
+    mixed.generate(seed.begin(), seed.end());
+    return seed[0];
+}
 
 std::vector<HandEyePair> seen(const Case& c, const Motion& camera, const Motion& target, int count,
                               Dice& dice) {
@@ -53,8 +67,8 @@ void run(const Case& c, int trials, Share& truth, Share& halves, const RobotRepe
     double sigmas = 0;
     int solved = 0;
     for (int trial = 0; trial < trials; ++trial) {
-        Dice dice(static_cast<unsigned>(1000 * c.pairs + 7 * trial + 1));
         const bool fixed = c.mount == Mount::eye_to_hand;
+        Dice dice(seed_of({fixed ? 1.0 : 0.0, double(c.pairs), c.robot_mm, c.robot_rad, c.corner_px}, trial));
         const Motion camera =
             motion(dice.box(0.8, 0.8, 0.8), fixed ? Vec3(1500, 200, 900) : Vec3(80, -30, 150));
         const Motion target =
@@ -112,8 +126,8 @@ TEST(HandEyeIntervals, AStatedRepeatabilityHoldsAndIsWorthPairs) {
             const Case c{mount, pairs, 0.2, 4e-4, 0.05};
             Share with, without, halves;
             double sigma_with = 0, sigma_without = 0;
-            run(c, 200, with, halves, {c.robot_mm, c.robot_rad}, &sigma_with);
-            run(c, 200, without, halves, {}, &sigma_without);
+            run(c, 100, with, halves, {c.robot_mm, c.robot_rad}, &sigma_with);
+            run(c, 100, without, halves, {}, &sigma_without);
             with.print(std::string(name_of(mount)) + " " + std::to_string(pairs) + " pairs, stated, sigma " +
                        std::to_string(sigma_with) + " mm instead of " + std::to_string(sigma_without));
             EXPECT_GE(with.value(), 0.93) << pairs;
@@ -154,7 +168,7 @@ PlainPairs plain_pairs(const PlainCell& c, Dice& dice, double robot_mm = 0, doub
 double in_ellipse(const PlainCell& c, int trials) {
     int inside = 0, asked = 0;
     for (int trial = 0; trial < trials; ++trial) {
-        Dice dice(static_cast<unsigned>(100 * c.pairs + trial));
+        Dice dice(seed_of({double(c.pairs), c.mm, c.deg, c.tilt_deg, c.reach_mm}, trial));
         const PlainPairs made = plain_pairs(c, dice);
         const auto r = calibrate_hand_eye(Mount::eye_in_hand, made.list);
         if (!r || r->status != HandEyeStatus::ok) continue;
@@ -170,9 +184,9 @@ TEST(HandEyeIntervals, TheEllipseOfFewPairsHolds) {
     for (const int pairs : {3, 4, 6, 8})
         for (const auto& [mm, deg, tilt, reach] :
              {std::array{0.03, 0.01, 25.0, 300.0}, {0.03, 0.01, 40.0, 300.0}, {0.1, 0.02, 20.0, 600.0}}) {
-            const double share = in_ellipse({pairs, mm, deg, tilt, reach}, 100);
+            const double share = in_ellipse({pairs, mm, deg, tilt, reach}, 200);
             std::printf("%d pairs, %.2f mm, %.2f deg, %.0f deg tilt: %.3f\n", pairs, mm, deg, tilt, share);
-            EXPECT_GE(share, 0.8) << pairs << " pairs, " << mm << " mm";
+            EXPECT_GE(share, 0.84) << pairs << " pairs, " << mm << " mm";
             EXPECT_LE(share, pairs < 5 ? 1.0 : 0.995) << pairs << " pairs, " << mm << " mm";
         }
 }
@@ -190,7 +204,7 @@ TEST(HandEyeIntervals, FewPairsOfABoardHold) {
                     all.add(truth);
                 }
             all.print(std::string(name_of(mount)) + " " + std::to_string(pairs) + " pairs");
-            EXPECT_GE(all.value(), 0.9) << pairs;  // the twelve numbers of a trial go together
+            EXPECT_GE(all.value(), 0.91) << pairs;
             EXPECT_LE(all.value(), 0.99) << pairs;
         }
 }
@@ -202,7 +216,7 @@ TEST(HandEyeIntervals, AWrongPitchShowsAndAnHonestOneDoesNot) {
     for (const double robot_mm : {0.0, 0.05, 0.1, 0.3})
         for (const int pairs : {5, 8, 12, 20})
             for (int trial = 0; trial < 30; ++trial) {
-                Dice dice(static_cast<unsigned>(trial + 97 * pairs));
+                Dice dice(seed_of({double(pairs), robot_mm}, trial));
                 const RobotRepeatability stated =
                     trial % 2 ? RobotRepeatability{robot_mm, rad_from_deg(0.1 * robot_mm)}
                               : RobotRepeatability{};
@@ -227,7 +241,7 @@ TEST(HandEyeIntervals, AWrongPitchShowsAndAnHonestOneDoesNot) {
     std::printf("honest doubted %d of %d, wrong seen %d of %d\n", doubted, honest, seen, wrong);
     EXPECT_LE(doubted, honest / 100);
     EXPECT_GE(seen, wrong * 95 / 100);
-    EXPECT_GE(sizes.value(), 0.89);
+    EXPECT_GE(sizes.value(), 0.92);
     EXPECT_LE(sizes.value(), 0.985);
 }
 

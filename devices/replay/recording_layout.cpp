@@ -23,7 +23,12 @@ nlohmann::json recording_layout_json(const RecordingLayout& layout) {
     put("pose_angle", layout.pose.angle);
     if (layout.channel != ImageChannel::grey) json["channel"] = to_string(layout.channel);
     if (!layout.profile.invalid.empty()) json["invalid"] = layout.profile.invalid;
-    if (layout.flange_from_sensor) json["flange_from_sensor"] = pose_json(*layout.flange_from_sensor);
+    const auto put_pose = [&](const char* key, const std::optional<Pose>& pose) {
+        if (pose) json[key] = pose_json(*pose);
+    };
+    put_pose("flange_from_sensor", layout.flange_from_sensor);
+    put_pose("flange_from_tool", layout.pose.flange_from_tool);
+    put_pose("base_from_user_frame", layout.pose.base_from_user_frame);
     return json;
 }
 
@@ -54,10 +59,11 @@ Expected<Profile> into_plane(const ReadProfile& points, const Pose& base_from_se
 }  // namespace
 
 Expected<RecordingLayout> parse_recording_layout(const nlohmann::json& json, const std::string& where) {
-    if (auto ok = only_fields(json,
-                              {"unit", "columns", "poses", "pose_convention", "pose_unit", "pose_angle",
-                               "channel", "flange_from_sensor", "invalid"},
-                              where);
+    if (auto ok =
+            only_fields(json,
+                        {"unit", "columns", "poses", "pose_convention", "pose_unit", "pose_angle", "channel",
+                         "flange_from_sensor", "flange_from_tool", "base_from_user_frame", "invalid"},
+                        where);
         !ok)
         return tl::unexpected(ok.error());
     RecordingLayout layout;
@@ -83,9 +89,13 @@ Expected<RecordingLayout> parse_recording_layout(const nlohmann::json& json, con
             layout.profile.invalid.push_back(value.get<double>());
         }
     }
-    if (json.contains("flange_from_sensor")) {
-        SEAM_TRY(auto pose, parse_pose(json["flange_from_sensor"], json_path(where, "flange_from_sensor")));
-        layout.flange_from_sensor = pose;
+    using Named = std::pair<const char*, std::optional<Pose>*>;
+    for (const auto& [key, value] : {Named{"flange_from_sensor", &layout.flange_from_sensor},
+                                     Named{"flange_from_tool", &layout.pose.flange_from_tool},
+                                     Named{"base_from_user_frame", &layout.pose.base_from_user_frame}}) {
+        if (!json.contains(key)) continue;
+        SEAM_TRY(auto pose, parse_pose(json[key], json_path(where, key)));
+        *value = pose;
     }
     return layout;
 }

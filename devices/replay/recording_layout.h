@@ -2,7 +2,8 @@
 // How a recording's files are to be understood where they do not say it themselves: units, columns, the
 // poses' form. As a whole in the settings of the replayed sensor and robot, under "layout":
 //   {"unit","columns","poses","pose_convention","pose_unit","pose_angle","channel"}: texts, all optional;
-//   "invalid": [heights, as the files write them, that stand for "no return"], and "flange_from_sensor": POSE.
+//   "invalid": [heights, as the files write them, that stand for "no return"]; "flange_from_sensor", "flange_from_tool",
+//   "base_from_user_frame": POSE.
 
 #include <nlohmann/json.hpp>
 #include <optional>

@@ -262,10 +262,8 @@ Expected<PoseTable> from_json(std::string_view text, const std::string& where) {
     return table;
 }
 
-}  // namespace
-
-Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& where,
-                                     const PoseLayout& layout) {
+// As the text has them.
+Expected<PoseTable> table_of(std::string_view text, const std::string& where, const PoseLayout& layout) {
     if (is_utf16(text)) return input_error("the text is UTF-16", where, "save it as UTF-8 or plain ASCII");
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     PoseForm form{layout.convention, 0, 0};
@@ -390,6 +388,36 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
     return table;
 }
 
+// From the tool in the frame that the layout names to the flange in the robot's base.
+void bring_to_flange(PoseTable& table, const PoseLayout& layout) {
+    const Pose tool_from_flange = layout.flange_from_tool.value_or(Pose::Identity()).inverse();
+    const Pose base_from_user_frame = layout.base_from_user_frame.value_or(Pose::Identity());
+    for (TablePose& p : table.poses) p.pose = base_from_user_frame * p.pose * tool_from_flange;
+    if (layout.flange_from_tool || layout.base_from_user_frame)
+        table.understood +=
+            fmt::format(", brought {}{}", layout.flange_from_tool ? "from the tool to the flange" : "",
+                        layout.base_from_user_frame ? fmt::format("{}from the user frame to the robot's base",
+                                                                  layout.flange_from_tool ? " and " : "")
+                                                    : "");
+    else if (table.of_own_frames)
+        table.understood +=
+            ", TAKEN AS THE FLANGE IN THE ROBOT'S BASE: a tool or user frame that is not zero is said by "
+            "--flange-from-tool and --base-from-user-frame";
+}
+
+}  // namespace
+
+bool PoseLayout::says_nothing() const {
+    return convention.empty() && unit.empty() && angle.empty() && !flange_from_tool && !base_from_user_frame;
+}
+
+Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& where,
+                                     const PoseLayout& layout) {
+    SEAM_TRY(auto table, table_of(text, where, layout));
+    bring_to_flange(table, layout);
+    return table;
+}
+
 Expected<PoseTable> read_pose_table(const std::filesystem::path& path, const PoseLayout& layout) {
     SEAM_TRY(const auto text, read_text_file(path));
     return parse_pose_table(text, path.string(), layout);
@@ -408,7 +436,7 @@ Expected<Pose> read_frame_pose(const std::filesystem::path& path, const PoseLayo
         }
         return count;
     }();
-    const bool usual = numbers != 6 && numbers != 12 && numbers != 16 && layout == PoseLayout{};
+    const bool usual = numbers != 6 && numbers != 12 && numbers != 16 && layout.says_nothing();
     if (usual) return read_pose_file(path);
     SEAM_TRY(auto table, parse_pose_table(text, path.string(), layout));
     if (table.poses.size() != 1)

@@ -14,6 +14,7 @@
 // for.
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,7 +34,10 @@ struct PoseLayout {
     std::string convention;  // of kPoseConventions; empty: as the header says
     std::string unit;        // of lengths (core/profile/units.h); empty: as the header says
     std::string angle;       // "deg" | "rad"; empty: as the header says
-    bool operator==(const PoseLayout&) const = default;
+    // Of what the poses are, where not of the flange, and in what, where not in the robot's base: pose P is the flange's
+    // base_from_user_frame * P * flange_from_tool^-1.
+    std::optional<Pose> flange_from_tool{}, base_from_user_frame{};
+    bool says_nothing() const;
 };
 
 struct TablePose {
@@ -50,9 +54,10 @@ struct PoseNames {
     std::vector<std::string> cells;  // one a pose; empty: nothing stands there
 };
 struct PoseTable {
-    std::vector<TablePose> poses;
+    std::vector<TablePose> poses;  // of the flange in the robot's base
     std::vector<PoseNames> names;
     std::string understood;
+    bool of_own_frames = false;  // a program's, whose tool or frame is not zero, or not known
 };
 
 // Error (input) with the line: no poses, rows of different widths, no number, unknown columns, a convention

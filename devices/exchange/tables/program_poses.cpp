@@ -29,11 +29,10 @@ Expected<Pose> placed(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& mm
     return make_pose(rotation, mm);
 }
 
-std::string understood(const PoseTable& table, std::string_view brand, const std::string& frames) {
-    return fmt::format(
-        "{} {} positions{}{} (taken as the flange in the robot's base: a tool or user frame that is not zero "
-        "must be undone first)",
-        table.poses.size(), brand, frames.empty() ? "" : " in ", frames);
+void understand(PoseTable& table, std::string_view brand, const std::string& frames) {
+    table.understood =
+        fmt::format("{} {} positions{}{}", table.poses.size(), brand, frames.empty() ? "" : " in ", frames);
+    table.of_own_frames = frames.empty() || frames.find_first_of("123456789?") != frames.npos;
 }
 
 Expected<PoseTable> fanuc_poses(std::string_view text, const std::string& where) {
@@ -97,7 +96,7 @@ Expected<PoseTable> fanuc_poses(std::string_view text, const std::string& where)
         if (table.poses.size() > kPoseLimit) return input_error("there are more poses than a million", where);
     }
     if (table.poses.empty()) return input_error("there are no positions behind /POS", where);
-    table.understood = understood(table, "FANUC", frames);
+    understand(table, "FANUC", frames);
     return table;
 }
 
@@ -220,7 +219,7 @@ Expected<PoseTable> kuka_poses(std::string_view text, const std::string& where) 
         return input_error(
             joints ? Text("holds positions of joints alone") : Text("declares no E6POS or POS with a value"),
             where, "give the data list of the program that measured");
-    table.understood = understood(table, "KUKA", frames);
+    understand(table, "KUKA", frames);
     return table;
 }
 
@@ -285,7 +284,7 @@ Expected<PoseTable> abb_poses(std::string_view text, const std::string& where) {
         return input_error(
             joints ? Text("holds positions of joints alone") : Text("declares no robtarget with a value"),
             where, "give the module of the program that measured");
-    table.understood = understood(table, "ABB", "");
+    understand(table, "ABB", "");
     return table;
 }
 

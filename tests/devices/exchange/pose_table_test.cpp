@@ -249,6 +249,32 @@ TEST(PoseTable, PointsOfAKukaDataList) {
     expect_no_poses("DEFDAT D\nENDDAT\n", "declares no E6POS");
 }
 
+// Tool and frame of the points undone: a robot that stands at the flange's poses brings its tool where the file says.
+TEST(PoseTable, PointsOfAToolInAUserFrame) {
+    PoseLayout layout;
+    layout.flange_from_tool = turned(10, -20, 180, 35);
+    layout.base_from_user_frame = turned(1000, 300, -40, 120);
+    const auto table = parse_pose_table(kDataList, "door.dat", layout);
+    ASSERT_TRUE(table) << table.error().sentence();
+    const Pose brought =
+        layout.base_from_user_frame->inverse() * table->poses[1].pose * *layout.flange_from_tool;
+    EXPECT_TRUE(brought.isApprox(kSecond, 1e-6)) << brought.matrix();
+    EXPECT_THAT(table->understood,
+                HasSubstr("brought from the tool to the flange and from the user frame to the robot's base"));
+    for (const std::string text : {"S1,800,-50,600,90,0,0\n", R"([{"xyz":[800,-50,600],"abc":[90,0,0]}])"}) {
+        PoseLayout tool{"kuka-abc", "", "", layout.flange_from_tool, {}};
+        const auto one = parse_pose_table(text, "t", tool);
+        ASSERT_TRUE(one) << one.error().sentence();
+        EXPECT_TRUE((one->poses[0].pose * *layout.flange_from_tool).isApprox(kFirst, 1e-6)) << text;
+    }
+    // Who does not say it is told where the file's own numbers are not zero.
+    std::string zero = kDataList;
+    for (std::size_t at; (at = zero.find("TOOL_NO 3,BASE_NO 1")) != zero.npos;)
+        zero.replace(at, 19, "TOOL_NO 0,BASE_NO 0");
+    EXPECT_THAT(parse_pose_table(kDataList, "d.dat", {})->understood, HasSubstr("TAKEN AS THE FLANGE"));
+    EXPECT_THAT(parse_pose_table(zero, "d.dat", {})->understood, testing::Not(HasSubstr("TAKEN AS")));
+}
+
 const std::string kModule = R"(%%%
   VERSION:1
 %%%

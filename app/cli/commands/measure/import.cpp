@@ -9,6 +9,7 @@
 #include "app/cli/arguments/calibration_argument.h"
 #include "app/cli/arguments/feature_setting.h"
 #include "app/cli/arguments/pose_argument.h"
+#include "app/cli/arguments/pose_table_arguments.h"
 #include "app/cli/command.h"
 #include "core/profile/stripe/peaks.h"
 #include "devices/exchange/files.h"
@@ -30,6 +31,7 @@ struct ImportArguments {
     std::vector<std::string> set;
     std::vector<double> piece, landmark;
     RecordingLayout layout;
+    PoseTableArguments poses;
     bool rows = false, columns = false, replace = false, look = false;
     double sigma_mm = FolderImport{}.sigma_mm, sigma_limit_mm = FolderImport{}.sigma_limit_mm;
 };
@@ -76,6 +78,7 @@ Expected<FolderImport> folder_import(const ImportArguments& a) {
     options.project_name = fs::path(a.file).stem().string();
     options.feature.kind = a.kind;
     options.layout = a.layout;
+    SEAM_TRY(options.layout.pose, a.poses.layout());
     if (!options.layout.poses.empty()) options.layout.poses = fs::absolute(options.layout.poses).string();
     SEAM_TRY(auto kind, find_feature_kind(a.kind));
     for (const std::string& entry : a.set) {
@@ -116,6 +119,7 @@ json number_or_null(double value) {
 
 Expected<Answer> look(const ImportArguments& a) {
     RecordingLayout layout = a.layout;
+    SEAM_TRY(layout.pose, a.poses.layout());
     if (!layout.poses.empty()) layout.poses = fs::absolute(layout.poses).string();
     if (a.channel != "automatic") layout.channel = *image_channel(a.channel);
     SEAM_TRY(auto flange, read_pose_argument(a.flange_from_sensor, "--flange-from-sensor"));
@@ -278,15 +282,7 @@ void add_import(CommandLine& line) {
                      "All poses in one file: CSV by name or by order, 4x4 matrices, JSON, or the points of a "
                      "program: KUKA .dat, ABB .mod, FANUC .ls")
         ->type_name("FILE");
-    command
-        ->add_option("--pose-convention", a->layout.pose.convention,
-                     "What six or seven numbers mean: kuka-abc, fanuc-wpr, rpy, ur-rotvec, zyz, quat-wxyz, "
-                     "quat-xyzw, matrix")
-        ->check(CLI::IsMember(list(kPoseConventions)));
-    command->add_option("--pose-unit", a->layout.pose.unit, "What the positions are in")
-        ->check(CLI::IsMember(list(kLengthUnits)));
-    command->add_option("--pose-angle", a->layout.pose.angle, "What the angles are in")
-        ->check(CLI::IsMember({"deg", "rad"}));
+    add_pose_table_options(command, a->poses, nullptr);
     command->add_option("--kind", a->kind, "Feature kind of every spot")->capture_default_str();
     command->add_option("--set", a->set, "Setting of the feature, NAME=VALUE; may be repeated")
         ->type_name("NAME=VALUE");

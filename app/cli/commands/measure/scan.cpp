@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <iterator>
 #include <span>
 
+#include "app/cli/arguments/pose_table_arguments.h"
 #include "app/cli/command.h"
 #include "app/cli/sign_in.h"
 #include "app/cli/signal_watch.h"
@@ -21,7 +21,7 @@ using nlohmann::json;
 
 struct ScanArguments {
     std::string file, capture, out, path, keep, kept, remove;
-    PoseLayout layout;
+    PoseTableArguments poses;
     std::int64_t run = 0;
     bool follow = false, list = false;
     RecordedGapPass recorded;
@@ -48,7 +48,8 @@ std::string path_words(const ScanArguments& a) {
 
 Expected<ScanResult> scanned_by_devices(ScanArguments& a) {
     if (!a.path.empty()) {
-        SEAM_TRY(const auto table, read_pose_table(a.path, a.layout));
+        SEAM_TRY(const auto layout, a.poses.layout());
+        SEAM_TRY(const auto table, read_pose_table(a.path, layout));
         for (const TablePose& p : table.poses) a.driven.stands.push_back(p.pose);
     }
     SEAM_TRY(auto station, open_station(a.file));
@@ -223,18 +224,7 @@ void add_scan_options(CLI::App* command, const std::shared_ptr<ScanArguments>& a
         ->check(CLI::Range(0.1, 86400.0))
         ->capture_default_str()
         ->needs(follow);
-    command
-        ->add_option("--pose-convention", a->layout.convention,
-                     "Of the poses' rotations, where their header does not say")
-        ->check(
-            CLI::IsMember(std::vector<std::string>(std::begin(kPoseConventions), std::end(kPoseConventions))))
-        ->needs(path);
-    command->add_option("--pose-unit", a->layout.unit, "Of the poses' lengths")
-        ->check(CLI::IsMember({"mm", "m", "in"}))
-        ->needs(path);
-    command->add_option("--pose-angle", a->layout.angle, "Of the poses' angles")
-        ->check(CLI::IsMember({"deg", "rad"}))
-        ->needs(path);
+    add_pose_table_options(command, a->poses, path);
     command->add_option("--step-mm", a->driven.step_mm, "Of the robot, from profile to profile")
         ->check(CLI::Range(0.05, 100.0))
         ->capture_default_str();

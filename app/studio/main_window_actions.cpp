@@ -6,8 +6,8 @@
 
 #include "app/manual/manual.h"
 #include "app/manual/manual_window.h"
-#include "app/studio/about.h"
-#include "app/studio/command_palette.h"
+#include "app/studio/dialogs/about.h"
+#include "app/studio/dialogs/command_palette.h"
 #include "app/studio/main_window.h"
 #include "app/studio/studio.h"
 #include "widgets/dialogs/gap_dialog.h"

@@ -9,8 +9,8 @@
 #include <QPointer>
 #include <QPushButton>
 
+#include "app/studio/dialogs/reuse_dialogs.h"
 #include "app/studio/main_window.h"
-#include "app/studio/reuse_dialogs.h"
 #include "app/studio/studio.h"
 #include "devices/exchange/json_fields.h"
 #include "projects/hand_over/hand_over.h"

@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/studio/dialogs/sign_in_dialog.h"
 #include "app/studio/main_window.h"
-#include "app/studio/sign_in_dialog.h"
 #include "app/studio/studio.h"
 #include "widgets/menu_signs.h"
 #include "widgets/pages/run_page.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/profile/filter_steps.h"
+#include "core/profile/filtering/filter_steps.h"
 #include "core/profile/no_return.h"
 
 namespace seamwright {

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "devices/genicam/gvcp.h"
-#include "devices/genicam/pixel_format.h"
+#include "devices/genicam/pixels/pixel_format.h"
 #include "devices/silence.h"
 
 namespace seamwright {

@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "devices/exchange/image_file.h"
 #include "devices/exchange/settings.h"
-#include "devices/genicam/range_image.h"
+#include "devices/genicam/pixels/range_image.h"
 
 namespace seamwright {
 

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "devices/robot_path/machine.h"
+#include "devices/robot_path/machine/machine.h"
 
 namespace seamwright::program_path {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/geometry/notation.h"
-#include "devices/robot_path/machine.h"
+#include "devices/robot_path/machine/machine.h"
 
 namespace seamwright::program_path {
 

@@ -8,7 +8,7 @@
 #include "core/geometry/notation.h"
 #include "devices/robot_path/krl_blocks.h"
 #include "devices/robot_path/krl_values.h"
-#include "devices/robot_path/machine.h"
+#include "devices/robot_path/machine/machine.h"
 
 namespace seamwright::program_path {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "devices/robot_path/machine.h"
+#include "devices/robot_path/machine/machine.h"
 
 namespace seamwright::program_path {
 

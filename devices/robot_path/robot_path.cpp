@@ -4,7 +4,7 @@
 #include <set>
 
 #include "devices/exchange/files.h"
-#include "devices/robot_path/machine.h"
+#include "devices/robot_path/machine/machine.h"
 
 namespace seamwright {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/geometry/notation.h"
-#include "devices/robot_path/machine.h"
+#include "devices/robot_path/machine/machine.h"
 
 namespace seamwright::program_path {
 namespace {

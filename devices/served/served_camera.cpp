@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "devices/exchange/json_fields.h"
-#include "devices/genicam/pixel_format.h"
+#include "devices/genicam/pixels/pixel_format.h"
 
 namespace seamwright {
 namespace {

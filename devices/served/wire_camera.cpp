@@ -17,7 +17,7 @@
 #include <thread>
 
 #include "devices/genicam/aravis_private.h"
-#include "devices/genicam/pixel_format.h"
+#include "devices/genicam/pixels/pixel_format.h"
 #include "devices/served/gige_server.h"
 #include "served_camera_xml.h"
 

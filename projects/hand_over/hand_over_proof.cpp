@@ -3,8 +3,8 @@
 
 #include "projects/hand_over/hand_over_detail.h"
 #include "projects/measure/measure.h"
-#include "projects/proof/budget_advice.h"
-#include "projects/proof/budget_page.h"
+#include "projects/proof/budget/budget_advice.h"
+#include "projects/proof/budget/budget_page.h"
 #include "projects/proof/forecast.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/present_names.h"

@@ -146,7 +146,7 @@ struct PaintLight {
     bool operator==(const PaintLight&) const = default;
 };
 
-// What the sensor is set to while it cuts a spot (projects/station/spot_light.h). Empty: it stands as it does at its start.
+// What the sensor is set to while it cuts a spot (projects/station/light/spot_light.h). Empty: it stands as it does at its start.
 struct SpotLight {
     // By the device's own names (ProfileSource::parameters()): "exposure_us", "gain_db", ... What is not named stands as
     // at the sensor's start.

@@ -8,7 +8,7 @@
 #include "devices/host_time.h"
 #include "devices/silence.h"
 #include "projects/measure/measure.h"
-#include "projects/station/spot_light.h"
+#include "projects/station/light/spot_light.h"
 
 namespace seamwright {
 namespace {

@@ -18,7 +18,7 @@
 #include "projects/model/project.h"
 #include "projects/station/acquire.h"
 #include "projects/station/check.h"
-#include "projects/station/spot_light.h"
+#include "projects/station/light/spot_light.h"
 
 namespace seamwright {
 namespace {

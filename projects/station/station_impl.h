@@ -15,7 +15,7 @@
 #include "projects/gate/safety_gate.h"
 #include "projects/measure/measure.h"
 #include "projects/station/acquire.h"
-#include "projects/station/spot_light.h"
+#include "projects/station/light/spot_light.h"
 #include "projects/station/station.h"
 
 namespace seamwright {

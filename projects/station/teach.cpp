@@ -10,7 +10,7 @@
 #include "core/profile/taught_profile.h"
 #include "projects/measure/measure.h"
 #include "projects/station/acquire.h"
-#include "projects/station/spot_light.h"
+#include "projects/station/light/spot_light.h"
 
 namespace seamwright {
 namespace {

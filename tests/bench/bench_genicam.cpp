@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "devices/genicam/genicam.h"
-#include "devices/genicam/pixel_format.h"
+#include "devices/genicam/pixels/pixel_format.h"
 #include "devices/registry.h"
 #include "devices/served/served_camera.h"
 

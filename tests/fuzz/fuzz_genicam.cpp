@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "devices/genicam/gvcp.h"
-#include "devices/genicam/range_image.h"
+#include "devices/genicam/pixels/range_image.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace seamwright;

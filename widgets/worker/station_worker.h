@@ -25,7 +25,7 @@
 #include "projects/panel/gap_check.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
-#include "projects/station/spot_light.h"
+#include "projects/station/light/spot_light.h"
 #include "projects/station/station.h"
 #include "projects/station/teach.h"
 #include "widgets/worker/live_feed.h"

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <random>
 
-#include "core/calibration/pose/hand_eye_judge.h"
-#include "core/calibration/pose/hand_eye_noise.h"
-#include "core/calibration/pose/hand_eye_solve.h"
-#include "core/calibration/pose/hand_eye_start.h"
+#include "core/calibration/pose/hand_eye/hand_eye_judge.h"
+#include "core/calibration/pose/hand_eye/hand_eye_noise.h"
+#include "core/calibration/pose/hand_eye/hand_eye_solve.h"
+#include "core/calibration/pose/hand_eye/hand_eye_start.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/statistics.h"
 #include "core/median.h"

@@ -7,7 +7,7 @@
 
 #include "abb_application.h"
 #include "devices/abb/program.h"
-#include "devices/controllers/abb/rapid_system.h"
+#include "devices/controllers/abb/rapid/rapid_system.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/settings.h"
 #include "devices/robot_program.h"

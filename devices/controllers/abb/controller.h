@@ -23,7 +23,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "devices/controllers/abb/rapid_robot.h"
+#include "devices/controllers/abb/rapid/rapid_robot.h"
 #include "devices/robot_program.h"
 
 namespace seamwright {

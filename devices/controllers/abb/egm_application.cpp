@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "devices/controllers/abb/rapid_system.h"
+#include "devices/controllers/abb/rapid/rapid_system.h"
 
 namespace seamwright::rapid {
 namespace {

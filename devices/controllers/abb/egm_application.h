@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "devices/abb/egm_message.h"
-#include "devices/controllers/abb/rapid_machine.h"
+#include "devices/controllers/abb/rapid/rapid_machine.h"
 #include "devices/controllers/cyclic/simulated_path.h"
 #include "devices/robot_program.h"
 

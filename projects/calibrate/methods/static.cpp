@@ -9,9 +9,9 @@
 #include "core/calibration/pose/static_chain.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/methods/cameras/several_cameras.h"
 #include "projects/calibrate/methods/example/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
-#include "projects/calibrate/methods/several_cameras.h"
 
 namespace seamwright {
 namespace {

@@ -15,7 +15,7 @@
 #include "projects/calibrate/input/plate_images.h"
 #include "projects/calibrate/input/sphere_data.h"
 #include "projects/calibrate/input/stripe_line_points.h"
-#include "projects/calibrate/methods/stripe_frames.h"
+#include "projects/calibrate/methods/cameras/stripe_frames.h"
 #include "projects/calibrate/session/apex_pair.h"
 #include "projects/calibrate/session/sphere_sight.h"
 #include "projects/calibrate/solution/camera_json.h"

@@ -15,7 +15,7 @@
 #include <filesystem>
 #include <set>
 
-#include "app/studio/command_palette.h"
+#include "app/studio/dialogs/command_palette.h"
 #include "app/studio/studio.h"
 #include "tests/app/studio/person.h"
 #include "tests/app/studio/screen_audit.h"

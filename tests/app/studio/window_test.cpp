@@ -11,7 +11,7 @@
 #include <fstream>
 
 #include "app/manual/manual_window.h"
-#include "app/studio/command_palette.h"
+#include "app/studio/dialogs/command_palette.h"
 #include "devices/simulated/cell.h"
 #include "devices/simulated/scene/mesh_file.h"
 #include "tests/app/studio/furniture.h"

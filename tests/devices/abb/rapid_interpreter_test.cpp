@@ -8,8 +8,8 @@
 #include "core/geometry/pose.h"
 #include "devices/abb/program.h"
 #include "devices/controllers/abb/controller.h"
-#include "devices/controllers/abb/rapid_language.h"
-#include "devices/controllers/abb/rapid_system.h"
+#include "devices/controllers/abb/rapid/rapid_language.h"
+#include "devices/controllers/abb/rapid/rapid_system.h"
 
 namespace seamwright {
 namespace {

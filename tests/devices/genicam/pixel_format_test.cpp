@@ -1,5 +1,5 @@
 // Packings against bytes worked out by hand, and against an oracle that reads bit by bit.
-#include "devices/genicam/pixel_format.h"
+#include "devices/genicam/pixels/pixel_format.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <random>
 
-#include "devices/genicam/range_image.h"
+#include "devices/genicam/pixels/range_image.h"
 
 namespace seamwright {
 namespace {

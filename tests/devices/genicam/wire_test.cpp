@@ -9,7 +9,7 @@
 
 #include "devices/genicam/genicam.h"
 #include "devices/genicam/gvcp.h"
-#include "devices/genicam/pixel_format.h"
+#include "devices/genicam/pixels/pixel_format.h"
 #include "devices/net/socket.h"
 #include "devices/registry.h"
 #include "devices/served/served_camera.h"

@@ -3,8 +3,8 @@
 #include <random>
 
 #include "core/calibration/board/board.h"
+#include "projects/calibrate/methods/cameras/stripe_frames.h"
 #include "projects/calibrate/methods/methods.h"
-#include "projects/calibrate/methods/stripe_frames.h"
 
 namespace seamwright {
 namespace {

@@ -12,8 +12,8 @@
 #include "core/correction/travel.h"
 #include "core/geometry/notation.h"
 #include "projects/measure/measure.h"
-#include "projects/proof/budget_json.h"
-#include "projects/proof/budget_page.h"
+#include "projects/proof/budget/budget_json.h"
+#include "projects/proof/budget/budget_page.h"
 #include "projects/proof/path_direction.h"
 #include "tests/projects/fake_cell.h"
 

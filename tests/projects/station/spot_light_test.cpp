@@ -1,4 +1,4 @@
-#include "projects/station/spot_light.h"
+#include "projects/station/light/spot_light.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

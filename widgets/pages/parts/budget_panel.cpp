@@ -3,8 +3,8 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "projects/proof/budget_advice.h"
-#include "projects/proof/budget_page.h"
+#include "projects/proof/budget/budget_advice.h"
+#include "projects/proof/budget/budget_page.h"
 #include "widgets/pages/parts/step_page.h"
 #include "widgets/shown_text.h"
 #include "widgets/words.h"

@@ -5,7 +5,7 @@
 #include <QPushButton>
 #include <QWidget>
 
-#include "projects/station/spot_light.h"
+#include "projects/station/light/spot_light.h"
 #include "widgets/desk/desk.h"
 
 namespace seamwright {

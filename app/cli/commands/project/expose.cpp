@@ -9,7 +9,7 @@
 #include "app/cli/command.h"
 #include "app/cli/sign_in.h"
 #include "app/cli/signal_watch.h"
-#include "projects/station/spot_light.h"
+#include "projects/station/light/spot_light.h"
 #include "projects/station/station.h"
 
 namespace seamwright::cli {

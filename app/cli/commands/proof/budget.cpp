@@ -11,8 +11,8 @@
 #include "core/number_text.h"
 #include "devices/exchange/files.h"
 #include "projects/file/project_file.h"
-#include "projects/proof/budget_json.h"
-#include "projects/proof/budget_page.h"
+#include "projects/proof/budget/budget_json.h"
+#include "projects/proof/budget/budget_page.h"
 
 namespace seamwright::cli {
 namespace {

@@ -6,7 +6,7 @@
 #include <opencv2/calib3d.hpp>
 #include <random>
 
-#include "core/calibration/pose/hand_eye_start.h"
+#include "core/calibration/pose/hand_eye/hand_eye_start.h"
 #include "tests/core/calibration/pose/hand_eye_simulation.h"
 
 namespace seamwright {

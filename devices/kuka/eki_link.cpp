@@ -198,13 +198,14 @@ class EkiLink final : public RobotLink {
 
     enum class Said { nothing_yet, hello, nonsense };
     // What a newcomer has said by now.
-    Said hear(Newcomer& newcomer, EkiTelegram& hello) const {
+    Said hear(Newcomer& newcomer, EkiTelegram& hello) {
         std::array<char, 4096> buffer;
         while (const auto got =
                    newcomer.connection.receive_some(std::as_writable_bytes(std::span(buffer)), Timeout(0)))
             if (!newcomer.splitter.add({buffer.data(), *got})) return Said::nonsense;
         if (std::string document; newcomer.splitter.next(document)) {
             auto telegram = parse_eki_telegram(document);
+            if (!telegram) misheard_ = telegram.error().what;
             if (!telegram || telegram->kind != "hello" || telegram->name.empty()) return Said::nonsense;
             hello = std::move(*telegram);
             return Said::hello;
@@ -233,6 +234,7 @@ class EkiLink final : public RobotLink {
                     notices_.push_back(Text("{} has taken over from {}, which answers no more",
                                             who(hello, newcomer->connection), who(hello_, *connection_)));
                 drop();
+                misheard_.reset();
                 hello_ = std::move(hello);
                 connection_.emplace(std::move(newcomer->connection));
                 splitter_ = std::move(newcomer->splitter);
@@ -252,6 +254,11 @@ class EkiLink final : public RobotLink {
         for (welcome(Clock::now());; welcome(std::min(until, Clock::now() + kLook))) {
             meet();
             if (connection_ && connection_->is_open()) return {};
+            if (Clock::now() >= until && misheard_)
+                return device_error(ErrorCode::silence,
+                                    Text("{}: {} has connected, but its first telegram {}", kNoAnswer,
+                                         stranger_, *std::exchange(misheard_, std::nullopt)),
+                                    where_, "load the files of `seamwright robot-program` on the controller");
             if (Clock::now() >= until)
                 return device_error(ErrorCode::silence, Text("{}: no robot has connected", kNoAnswer), where_,
                                     "start SEAMWRIGHT_SUB in the controller's submit interpreter");
@@ -375,6 +382,7 @@ class EkiLink final : public RobotLink {
     const Timeout timeout_;
     std::uint64_t strangers_ = 0;  // since they were told
     std::string stranger_;
+    std::optional<Text> misheard_;  // why a newcomer's first telegram was none
     std::vector<Text> notices_;
     std::vector<Newcomer> newcomers_;
     std::optional<TcpConnection> connection_;  // has said hello

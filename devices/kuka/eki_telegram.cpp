@@ -52,7 +52,8 @@ Expected<EkiTelegram> parse(std::string_view document, std::string_view root_nam
     for (std::size_t i = 0; i < 6; ++i) {
         const auto attribute = pos.attribute(kPos[i]);
         const std::string value = attribute.value();
-        const auto number = number_from<double>(value);
+        const bool sign = value.size() > 1 && value[0] == '+' && value[1] != '-';
+        const auto number = number_from<double>(std::string_view(value).substr(sign ? 1 : 0));
         if (!number) return device_error(Text("has no number Pos/{}", kPos[i]), kEkiWhere);
         v[i] = *number;
         if (!(std::abs(v[i]) <= (i < 3 ? 1e5 : 360.0)))
@@ -103,11 +104,15 @@ std::string write_eki(std::string_view root, const EkiTelegram& t) {
 Expected<void> EkiSplitter::add(std::string_view bytes) {
     for (const char c : bytes)
         if (c != '\0') buffer_ += c;
-    for (std::size_t end; (end = buffer_.find(end_)) != std::string::npos;) {
-        end += end_.size();
-        if (end > kEkiLongestTelegram) break;
-        documents_.push_back(buffer_.substr(0, end));
-        buffer_.erase(0, end);
+    for (std::size_t from = 0, at; (at = buffer_.find(end_, from)) != std::string::npos;) {
+        // XML allows blanks before the '>'; another sign there makes it another element's name.
+        const std::size_t end = buffer_.find_first_not_of(" \t\r\n", at + end_.size());
+        if (end == std::string::npos || end >= kEkiLongestTelegram) break;
+        from = at + 1;
+        if (buffer_[end] != '>') continue;
+        documents_.push_back(buffer_.substr(0, end + 1));
+        buffer_.erase(0, end + 1);
+        from = 0;
     }
     if (buffer_.size() > kEkiLongestTelegram)
         return device_error(Text("is longer than {} bytes", kEkiLongestTelegram), kEkiWhere,

@@ -55,7 +55,7 @@ std::string write_eki(std::string_view root, const EkiTelegram& telegram);
 // judges.
 class EkiSplitter {
   public:
-    explicit EkiSplitter(std::string root) : end_("</" + std::move(root) + ">") {}
+    explicit EkiSplitter(std::string root) : end_("</" + std::move(root)) {}
     // Error (device): the document that has begun is longer than kEkiLongestTelegram; the stream is then
     // broken.
     Expected<void> add(std::string_view bytes);

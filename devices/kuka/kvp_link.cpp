@@ -162,12 +162,13 @@ class KvpLink final : public RobotLink {
                              "measure the part again"});
             return count > told_;
         }));
+        const std::int64_t heard_ns = host_now_ns();
         ++told_;  // the module keeps all of a program, so none is lost between two polls
         SEAM_TRY(auto values,
                  read({fmt::format("SW_SPOT[{},]", told_), fmt::format("SW_SPOT_AT[{}]", told_)}));
         auto pose = frame_from_krl(values[1]);
         if (!pose) return fail(pose.error());
-        return TriggerEvent{string_from_krl(values[0]), host_now_ns(), *pose};
+        return TriggerEvent{string_from_krl(values[0]), heard_ns, *pose};
     }
 
     Expected<Pose> read_frame(const std::string& name) override {
@@ -329,29 +330,32 @@ class KvpLink final : public RobotLink {
         return {};
     }
 
-    // All requests in one segment, then their answers in order.
+    // One request after the other: servers that take what one receive brings for one message answer the first of several
+    // alone. Each answer has the whole time-out.
     Expected<std::vector<KvpAnswer>> ask(std::vector<KvpRequest> requests) {
         SEAM_OK(connected());
-        const auto until = Clock::now() + timeout_;
-        std::string bytes;
+        std::vector<KvpAnswer> answers;
         for (KvpRequest& r : requests) {
             r.id = ++last_id_;
-            bytes += kvp_bytes(r);
+            SEAM_TRY(auto answer, ask_one(r));
+            answers.push_back(std::move(answer));
         }
-        if (auto sent = connection_->send(bytes_of(bytes), left(until)); !sent) return fail(sent.error());
-        std::vector<KvpAnswer> answers;
-        while (answers.size() < requests.size()) {
+        return answers;
+    }
+    Expected<KvpAnswer> ask_one(const KvpRequest& asked) {
+        const auto until = Clock::now() + timeout_;
+        if (auto sent = connection_->send(bytes_of(kvp_bytes(asked)), timeout_); !sent)
+            return fail(sent.error());
+        for (;;) {
             auto answer = take_kvp_answer(stream_);
             if (!answer) return fail(answer.error());
             if (*answer) {
-                const KvpRequest& asked = requests[answers.size()];
                 if ((*answer)->id != asked.id || (*answer)->write != asked.write)
                     return fail({ErrorKind::device,
                                  fmt::format("answer {} came to request {} ({})", (*answer)->id, asked.id,
                                              asked.name),
                                  where_, "only one program may use this connection"});
-                answers.push_back(std::move(**answer));
-                continue;
+                return std::move(**answer);
             }
             std::array<char, 4096> buffer;
             const auto got =
@@ -359,7 +363,6 @@ class KvpLink final : public RobotLink {
             if (!got) return fail(got.error());
             stream_.append(buffer.data(), *got);
         }
-        return answers;
     }
 
     Expected<std::vector<std::string>> read(const std::vector<std::string>& names) {

@@ -101,7 +101,8 @@ Expected<std::optional<KvpAnswer>> take_kvp_answer(std::string& stream) {
     a.id = static_cast<std::uint16_t>(get16(stream, 0));
     a.write = stream[4] == 1;
     a.value = stream.substr(7, value);
-    a.done = stream[total - 1] == 1;
+    // No value of KRL is empty: so the published server answers what it does not know, with a 1 behind it.
+    a.done = stream[total - 1] == 1 && (a.write || value > 0);
     stream.erase(0, total);
     return a;
 }

@@ -7,9 +7,10 @@
 //     answer    id uint16 | length uint16 | mode uint8 | value length uint16 | value | status 3 bytes
 //
 // Numbers are big endian; length counts what follows it, in answers without the three status bytes (some
-// servers count them: both are read). The last status byte is 1 when the controller did it, else 0. Several
-// messages may share a segment. Source: the message table of the project's documentation and of its clients
-// (py_openshowvar among them).
+// servers count them: both are read). The last status byte is 1 when the controller did it, else 0; an unknown
+// variable is read as an empty value with a 1 by the published server. Several messages may share a segment in
+// answers; requests are sent one by one (kvp_link.cpp). Source: the message table of the project's documentation, its
+// server and clients (py_openshowvar among them).
 
 #include <array>
 #include <cstdint>

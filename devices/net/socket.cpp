@@ -2,8 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <netdb.h>
+
+#include <algorithm>
 #include <atomic>
 #include <boost/asio.hpp>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <vector>
 
 namespace seamwright {
 namespace {
@@ -51,6 +58,59 @@ tl::unexpected<Error> failure(const error_code& e, const std::string& where) {
         return device_error(ErrorCode::disconnected, kDisconnected, where,
                             "check the cable and the controller");
     return device_error(e.message(), where);
+}
+
+// Letters, digits, '-' and '_' between dots. What ends in a number is none: the system's lookup would take "192.168.1" and
+// octal "0177.0.0.1" for addresses, and other ones than they look like.
+bool may_be_name(const std::string& host) {
+    const auto sign = [](unsigned char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+               c == '_' || c == '.';
+    };
+    const std::string last = host.substr(host.rfind('.') + 1);
+    return host.size() <= 253 && std::all_of(host.begin(), host.end(), sign) &&
+           host.find("..") == std::string::npos && !last.empty() &&
+           ((last[0] | 0x20) >= 'a' && (last[0] | 0x20) <= 'z') && host[0] != '.' && host[0] != '-';
+}
+
+// A lookup cannot be called off, so it has a thread of its own, which may outlast who asked.
+Expected<std::vector<asio::ip::address>> addresses_of(const std::string& name, Timeout timeout) {
+    struct Lookup {
+        std::mutex mutex;
+        std::condition_variable ended;
+        bool done = false;
+        int result = 0;
+        std::vector<asio::ip::address> found;
+    };
+    const auto lookup = std::make_shared<Lookup>();
+    std::thread([lookup, name] {
+        addrinfo wanted{}, *list = nullptr;
+        wanted.ai_socktype = SOCK_STREAM;
+        const int result = ::getaddrinfo(name.c_str(), nullptr, &wanted, &list);
+        std::vector<asio::ip::address> found;
+        for (const addrinfo* a = list; result == 0 && a != nullptr; a = a->ai_next) {
+            asio::ip::tcp::endpoint endpoint;
+            if (a->ai_addrlen > endpoint.capacity()) continue;
+            std::copy_n(reinterpret_cast<const char*>(a->ai_addr), a->ai_addrlen,
+                        reinterpret_cast<char*>(endpoint.data()));
+            endpoint.resize(a->ai_addrlen);
+            found.push_back(endpoint.address());
+        }
+        if (list != nullptr) ::freeaddrinfo(list);
+        const std::lock_guard lock(lookup->mutex);
+        lookup->result = result;
+        lookup->found = std::move(found);
+        lookup->done = true;
+        lookup->ended.notify_all();
+    }).detach();
+    std::unique_lock lock(lookup->mutex);
+    if (!lookup->ended.wait_for(lock, timeout, [&] { return lookup->done; }))
+        return device_error(ErrorCode::silence, Text("{}: the name \"{}\" is not found", kNoAnswer, name),
+                            name, "check the name, or give the address as four numbers, 192.168.1.10");
+    if (lookup->found.empty())
+        return device_error(Text("the name \"{}\" is not found", name), name,
+                            "check the name, or give the address as four numbers, 192.168.1.10");
+    return lookup->found;
 }
 
 tl::unexpected<Error> closed_here(const std::string& where) {
@@ -101,17 +161,30 @@ TcpConnection& TcpConnection::operator=(TcpConnection&&) noexcept = default;
 TcpConnection::~TcpConnection() = default;
 
 Expected<TcpConnection> TcpConnection::connect(const std::string& host, std::uint16_t port, Timeout timeout) {
+    const auto until = Clock::now() + timeout;
+    const auto left = [&] { return std::max(Timeout(0), std::chrono::ceil<Timeout>(until - Clock::now())); };
     auto impl = std::make_unique<Impl>();
     impl->peer = fmt::format("{}:{}", host, port);
     error_code e;
-    const asio::ip::address address = asio::ip::make_address(host, e);
-    if (e)
+    std::vector<asio::ip::address> addresses = {asio::ip::make_address(host, e)};
+    if (e && !may_be_name(host))
         return input_error(Text("\"{}\" is not an IP address", host), "",
                            "give it as four numbers, 192.168.1.10");
-    SEAM_OK(impl->wait(timeout, [&](auto done) {
-        impl->socket.async_connect({address, port},
-                                   [done](const error_code& error) mutable { done(error, 0); });
-    }));
+    if (e) {
+        SEAM_TRY(addresses, addresses_of(host, timeout));
+    }
+    // One after the other, as the system orders them; each has its share of the time.
+    Expected<std::size_t> made;
+    for (std::size_t i = 0; i < addresses.size(); ++i) {
+        error_code ignored;
+        impl->socket.close(ignored);
+        made = impl->wait(left() / static_cast<int>(addresses.size() - i), [&](auto done) {
+            impl->socket.async_connect({addresses[i], port},
+                                       [done](const error_code& error) mutable { done(error, 0); });
+        });
+        if (made) break;
+    }
+    if (!made) return tl::unexpected(made.error());
     impl->socket.set_option(tcp::no_delay(true), e);
     return TcpConnection(std::move(impl));
 }

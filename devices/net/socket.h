@@ -33,6 +33,8 @@ Expected<void> check_robot_address(const std::string& listen, const std::string&
 
 class TcpConnection {
   public:
+    // `host`: an address, or a name that this computer finds (its addresses are tried one after the other). Error (input):
+    // neither; (device): not found, or nobody answers, all within `timeout`.
     static Expected<TcpConnection> connect(const std::string& host, std::uint16_t port, Timeout timeout);
     TcpConnection(TcpConnection&&) noexcept;
     TcpConnection& operator=(TcpConnection&&) noexcept;

@@ -84,5 +84,24 @@ TEST(EkiPeer, StrangersAreRefusedAndTold) {
     EXPECT_THAT((*link)->take_notices(), ElementsAre(HasSubstr("1 connections of an unknown peer")));
 }
 
+// Who programs the other side reads why he is not taken for a robot.
+TEST(EkiPeer, AFirstTelegramThatIsNoneIsTold) {
+    DeviceSession session;
+    const std::uint16_t port = TcpListener::listen("127.0.0.1", 0)->port();
+    auto link = open_kuka_eki({{"port", port}, {"timeout_ms", 300}}, session);
+    ASSERT_TRUE(link) << link.error().sentence();
+    auto robot = TcpConnection::connect("127.0.0.1", port, Timeout(300));
+    ASSERT_TRUE(robot);
+    ASSERT_TRUE(robot->send(
+        bytes_of("<Robot Kind=\"hello\" Id=\"0\" Name=\"777\" Part=\"KR\" Mode=\"#AUT\" Text=\"-\">"
+                 "<Pos X=\"1,5\" Y=\"0\" Z=\"0\" A=\"0\" B=\"0\" C=\"0\"/></Robot>"),
+        Timeout(300)));
+    const auto nobody = (*link)->identity();
+    ASSERT_FALSE(nobody);
+    EXPECT_TRUE(is_silence(nobody.error()));
+    EXPECT_THAT(nobody.error().sentence(), HasSubstr("127.0.0.1:"));
+    EXPECT_THAT(nobody.error().sentence(), HasSubstr("its first telegram has no number Pos/X"));
+}
+
 }  // namespace
 }  // namespace seamwright

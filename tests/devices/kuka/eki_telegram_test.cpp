@@ -43,6 +43,16 @@ TEST(EkiTelegramTest, ReadsWhatAControllerWrites) {
     }
 }
 
+TEST(EkiTelegramTest, NumbersInEveryFormOfADecimal) {
+    for (const char* form : {"+1234.5678", "1.2345678e3", "1.2345678E+03", "1234.56780000"}) {
+        const auto t = parse_eki_telegram(changed(kTrigger, "1234.5678", form));
+        ASSERT_TRUE(t) << form << ": " << t.error().sentence();
+        EXPECT_DOUBLE_EQ(t->pose.translation().x(), 1234.5678) << form;
+    }
+    for (const char* form : {"+-1", "+", "++1", "1 2", "0x10"})
+        EXPECT_FALSE(parse_eki_telegram(changed(kTrigger, "1234.5678", form))) << form;
+}
+
 TEST(EkiTelegramTest, RefusesWhatIsNone) {
     const std::vector<std::pair<std::string, std::string>> bad = {
         {"", "no XML"},
@@ -97,6 +107,25 @@ TEST(EkiSplitterTest, CutsTheStreamWhateverItsPieces) {
             while (splitter.next(document)) names.push_back(parse_eki_telegram(document).value().name);
         }
         EXPECT_THAT(names, testing::ElementsAre("S4", "S5", "S4")) << piece;
+        EXPECT_FALSE(splitter.in_the_middle());
+    }
+}
+
+// XML 1.0, production 42: blanks may stand before the '>'.
+TEST(EkiSplitterTest, TheEndingTagMayHoldBlanks) {
+    const std::string one = kTrigger.substr(0, kTrigger.find("</Robot>") + 8);
+    const std::string blank = changed(one, "</Robot>", "</Robot\r\n >"),
+                      other = changed(one, "</Robot>", "<Robots></Robots></Robot\t>");
+    const std::string stream = blank + other + one;
+    for (std::size_t piece : {std::size_t{1}, stream.size()}) {
+        EkiSplitter splitter("Robot");
+        std::vector<std::string> documents;
+        std::string document;
+        for (std::size_t at = 0; at < stream.size(); at += piece) {
+            ASSERT_TRUE(splitter.add(std::string_view(stream).substr(at, piece)));
+            while (splitter.next(document)) documents.push_back(document);
+        }
+        EXPECT_THAT(documents, testing::ElementsAre(blank, other, one)) << piece;
         EXPECT_FALSE(splitter.in_the_middle());
     }
 }

@@ -1,5 +1,7 @@
 #include "devices/net/socket.h"
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -10,6 +12,7 @@ namespace seamwright {
 namespace {
 
 using std::chrono::milliseconds;
+using testing::HasSubstr;
 
 struct Pair {
     TcpConnection client, server;
@@ -85,12 +88,38 @@ TEST(Tcp, RefusedPortAndBadAddressAreClearErrors) {
     auto refused = TcpConnection::connect("127.0.0.1", free_port, milliseconds(500));
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().kind, ErrorKind::device);
-    auto bad = TcpConnection::connect("controller", 7000, milliseconds(500));
+    auto bad = TcpConnection::connect("192.168.1", 7000, milliseconds(500));
     ASSERT_FALSE(bad);
     EXPECT_EQ(bad.error().kind, ErrorKind::input);
     auto twice = TcpListener::listen("127.0.0.1", 0);
     ASSERT_TRUE(twice);
     EXPECT_FALSE(TcpListener::listen("127.0.0.1", twice->port()));
+}
+
+// A simulator in a container is known by its name alone. "localhost" is ::1 first where there is one.
+TEST(Tcp, APeerMayBeNamed) {
+    auto listener = TcpListener::listen("127.0.0.1", 0);
+    ASSERT_TRUE(listener);
+    const auto made = TcpConnection::connect("localhost", listener->port(), Timeout(2000));
+    ASSERT_TRUE(made) << made.error().sentence();
+    EXPECT_EQ(made->peer(), fmt::format("localhost:{}", listener->port()));
+    EXPECT_TRUE(listener->accept(Timeout(1000)));
+
+    const auto nobody = TcpConnection::connect("no-such-robot.invalid", 7000, Timeout(2000));
+    ASSERT_FALSE(nobody);
+    EXPECT_EQ(nobody.error().kind, ErrorKind::device);
+    EXPECT_THAT(nobody.error().sentence(), HasSubstr("the name \"no-such-robot.invalid\" is not found"));
+}
+
+// What a lookup would take for another address than it looks like, and what is neither address nor name.
+TEST(Tcp, WhatIsNeitherAddressNorNameIsRefused) {
+    for (const char* host :
+         {"", " 127.0.0.1", "127.0.0.1 ", "127.1", "0177.0.0.1", "0x7f.1", "2130706433", "300.1.1.1", "[::1]",
+          "robot:7000", "http://robot", "a..b", ".robot", "-robot", "robot 1"}) {
+        const auto made = TcpConnection::connect(host, 7000, Timeout(200));
+        ASSERT_FALSE(made) << host;
+        EXPECT_EQ(made.error().kind, ErrorKind::input) << host << made.error().sentence();
+    }
 }
 
 TEST(Udp, DatagramsKeepTheirBoundsAndLongOnesAreRefused) {

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/features/contour/contour_noise.h"
+#include "core/features/contour/face_order.h"
 
 namespace seamwright {
 namespace {
@@ -57,6 +58,7 @@ void ContourModel::build(const Profile& profile, double shared, double sigma_mm)
     extent_ = (upper_ - lower_).norm();
     if (!(extent_ > 0) || !std::isfinite(extent_)) return;
     pitch_ = contour_pitch(x_, z_, scratch_);
+    if (order_faces(pitch_, x_, z_)) pitch_ = contour_pitch(x_, z_, scratch_);
     if (!(pitch_.distance > 0)) return;
     const ProfileNoise noise = profile_noise(x_, z_, scratch_);
     sigma_ = std::max(noise.point_mm, kSmallestSigma_mm);
@@ -178,6 +180,24 @@ bool ContourModel::fit_window(int point, const Window& window, int degree, Edge&
     return true;
 }
 
+// A line over the point number is the same line however its points are spaced, but not a stretch of it: where one head's points
+// give way to another's, or returns are missing, the fit would have it up to several spacings from its own two points.
+void ContourModel::put_at_points(Edge& edge) const {
+    constexpr double kAside = 0.5,
+                     kNoise = 3;  // spacings, sigma: less is the fit's smoothing of noise along the contour
+    const auto k = static_cast<std::size_t>(edge.point);
+    const Eigen::Vector2d t(edge.tx, edge.tz), n(-t.y(), t.x()), p(x_[k], z_[k]), q(x_[k + 1], z_[k + 1]);
+    const double aside = t.dot(0.5 * (p + q) - Eigen::Vector2d(edge.cx, edge.cz));
+    if (std::abs(aside) < kAside * pitch_.distance + kNoise * sigma_) return;
+    const Eigen::Vector2d shift = aside * t + 0.5 * edge.curvature * aside * aside * n;
+    const Eigen::Vector2d turned = (t + edge.curvature * aside * n).normalized();
+    edge.cx += shift.x();
+    edge.cz += shift.y();
+    edge.tx = turned.x();
+    edge.tz = turned.y();
+    if (const double half = 0.5 * turned.dot(q - p); half > 0) edge.half = half;
+}
+
 void ContourModel::fit_edges() {
     const int n = static_cast<int>(x_.size());
     length_ = 0;
@@ -249,6 +269,7 @@ void ContourModel::fit_edges() {
             }
         }
         best.point = k;
+        put_at_points(best);
         best.wall = link_[k] == 2;
         best.run = run;
         best.previous = best.next = -1;

@@ -6,7 +6,8 @@
 // them. The window grows while the points keep to the fit within their noise and stops at corners, so that
 // straight and gently curved pieces are averaged over many points (a line through two noisy neighbours would
 // tilt by noise / pitch and bring information along the contour that is not there) while corners stay sharp.
-// Fits run over the point number, x and z apart, so every window costs the same: sums come from running sums.
+// Fits run over the point number, x and z apart, so every window costs the same: sums come from running sums. Where points are
+// spaced unevenly the stretch between two of them is moved along its fit to where they are.
 //
 // Noise model: noise of equal size on every point, across the contour, estimated from the fits' residuals; each point's
 // its own, or shared by neighbours (ContourPitch::alike()), whose waves are then no bends of the contour. A fitted value is a linear function of the window's points with known weights, which is what
@@ -82,6 +83,7 @@ class ContourModel {
 
   private:
     void fit_edges();
+    void put_at_points(Edge& edge) const;
     void build_nodes();
     // Coefficients of the orthogonal polynomials over a window of points, and its raw second moments.
     struct Window {

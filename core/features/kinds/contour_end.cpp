@@ -70,9 +70,16 @@ constexpr int kEndDoubtfulLines = 6;
 constexpr double kEndBeside = 3;  // pitches
 // Interpolated between points that were measured f pitches apart, n of them are worth n / (1.5 f).
 constexpr double kEndDependent = 1.5;
-constexpr double kEndAlone = 0.25;  // points on either side: less is no mean
-constexpr double kEndMisfit = 2.5;  // sigma of the last points' mean
-constexpr double kEndFull = 0.75;   // of the intensities' upper quartile: as bright as before the end
+constexpr double kEndAlone = 0.25;                // points on either side: less is no mean
+constexpr double kEndMisfit = 2.5;                // sigma of the last points' mean
+constexpr double kEndShares[] = {1, 0.65, 0.42};  // of fit_length_mm, where more is no arc
+constexpr std::size_t kEndFewestShort = 6;        // points of such a part
+// Of a contour against the line of the sensor: from where on the light grazes it, where it does for certain; how much the
+// angle scatters (sigma) at which the returns stop.
+constexpr double kEndGrazed_rad = 1.13, kEndGrazing_rad = 1.27, kEndLight_rad = 0.044;
+constexpr double kEndEven = 1e-4;        // steps: less is rounding
+constexpr double kEndUnseenApart = 0.9;  // pitches of an interpolation that its noise does not show
+constexpr double kEndFull = 0.75;        // of the intensities' upper quartile: as bright as before the end
 
 std::vector<ParameterInfo> contour_end_parameters() {
     return with_window({
@@ -119,8 +126,7 @@ class ContourEnd final : public FeatureFinder {
         const auto chosen = choose_end(sheets_, rule_, feature);
         if (!chosen) return feature;
         const bool at_last = chosen->at_last;
-        take_end(chosen->first, chosen->last, at_last);
-        const EndFit::Result fit = fit_.fit(fit_x_, fit_z_, sheets_.noise());
+        const EndFit::Result fit = fit_end(chosen->first, chosen->last, at_last);
         if (!fit.ok) {
             feature.message = "the points before the end do not form a line";
             return feature;
@@ -155,8 +161,9 @@ class ContourEnd final : public FeatureFinder {
         const double skew = drawn_off(curve, pitch, s);
         const double across = curve.variance_at(s) + bend * bend + misfit * misfit + skew * skew +
                               sheets_.noise().shared_rounding_mm2(curve.rms_mm) * normal.y() * normal.y();
-        const double along =
-            (reach * reach - 2 * pitch * measured) / 12 + (reach - step) * (reach - step) / 4 + noise * noise;
+        const double grazing = rounded ? grazing_variance(curve, curve.tangent(last_s), pitch, apart) : 0;
+        const double along = (reach * reach - 2 * pitch * measured) / 12 +
+                             (reach - step) * (reach - step) / 4 + noise * noise + grazing;
         feature.covariance_mm2 = across * normal * normal.transpose() + along * tangent * tangent.transpose();
         feature.rms_mm = curve.rms_mm;
         feature.points_used = curve.used;
@@ -167,15 +174,44 @@ class ContourEnd final : public FeatureFinder {
   private:
     Eigen::Vector2d point(std::size_t i) const { return {fit_x_[i], fit_z_[i]}; }
 
-    // The points within fit_length_ of the end, from the end inwards.
-    void take_end(int first, int last, bool at_last) const {
+    // Through the points within fit_length_ of the end; through fewer where those are other than a line or an arc (a hem and
+    // the flat before it) and these say better where the last point is. An arc is not given up for a line.
+    EndFit::Result fit_end(int first, int last, bool at_last) const {
+        EndFit::Result best;
+        double best_length = fit_length_, least = 0, tried = fit_length_;
+        for (const double share : kEndShares) {
+            const double length = share * fit_length_;
+            take_end(first, last, at_last, length);
+            if (share < 1 && fit_x_.size() < kEndFewestShort) break;
+            tried = length;
+            const EndFit::Result fit = fit_.fit(fit_x_, fit_z_, sheets_.noise());
+            if (!fit.ok) break;
+            const double s = fit.curve.along(point(0));
+            const double misfit =
+                std::max(std::abs(fit.curve.cubic_misfit.dot(Eigen::Vector4d(1, s, s * s, s * s * s))),
+                         end_misfit(fit.curve));
+            const double doubt = fit.curve.variance_at(s) + misfit * misfit;
+            if (!best.ok || (doubt < least && (fit.rounded || !best.rounded))) {
+                best = fit;
+                best_length = length;
+                least = doubt;
+            }
+            if (!(misfit * misfit > fit.curve.variance_at(s))) break;
+        }
+        if (best_length != tried || fit_x_.size() < kEndFewestShort)
+            take_end(first, last, at_last, best_length);
+        return best;
+    }
+
+    // The points within `length` of the end, from the end inwards.
+    void take_end(int first, int last, bool at_last, double length) const {
         const int step = at_last ? -1 : 1;
         const int end = at_last ? last : first;
         fit_x_.clear();
         fit_z_.clear();
         for (int i = end; i >= first && i <= last; i += step) {
             const double d = std::hypot(sheets_.x()[i] - sheets_.x()[end], sheets_.z()[i] - sheets_.z()[end]);
-            if (d > fit_length_ && fit_x_.size() >= 4) break;
+            if (d > length && fit_x_.size() >= 4) break;
             fit_x_.push_back(sheets_.x()[i]);
             fit_z_.push_back(sheets_.z()[i]);
         }
@@ -192,16 +228,23 @@ class ContourEnd final : public FeatureFinder {
         };
         const double pitch = median_step(curve.direction);
         if (!rounded) return pitch;
-        const double in_x = median_step(Eigen::Vector2d::UnitX()), advance = std::abs(tangent.x());
-        const double k = curve.curvature * tangent.y() * (tangent.x() < 0 ? -1 : 1);
-        const double steep = std::acos(std::min(advance, 1.0));
-        // The advance in x along an arc a that turns away: (sin(steep + c a) - sin(steep)) / c.
-        const double turning = std::copysign(std::abs(curve.curvature), k);
-        const double arc =
-            turning > kEndStraight_rad * advance / fit_length_
-                ? (std::asin(std::min(std::sin(steep) + turning * in_x, 1.0)) - steep) / turning
-                : in_x / std::max(advance, kEndSmallest_mm);
-        return std::clamp(arc, pitch, std::max(pitch, kEndLongestPitch * fit_length_));
+        return std::clamp(arc_over(median_step(Eigen::Vector2d::UnitX()), curve, tangent), pitch,
+                          std::max(pitch, kEndLongestPitch * fit_length_));
+    }
+
+    // How fast the arc turns away from the sensor beyond `tangent`, 1/mm; negative: it turns back.
+    static double turning_away(const EndCurve& curve, const Eigen::Vector2d& tangent) {
+        return std::copysign(std::abs(curve.curvature),
+                             curve.curvature * tangent.y() * (tangent.x() < 0 ? -1 : 1));
+    }
+    // The arc beyond `tangent` over which it advances by `in_x`, or comes to its vertical tangent. The advance along an arc a
+    // that turns away by c: (sin(steep + c a) - sin(steep)) / c.
+    double arc_over(double in_x, const EndCurve& curve, const Eigen::Vector2d& tangent) const {
+        const double advance = std::abs(tangent.x()), steep = std::acos(std::min(advance, 1.0));
+        const double turning = turning_away(curve, tangent);
+        return turning > kEndStraight_rad * advance / fit_length_
+                   ? (std::asin(std::min(std::sin(steep) + turning * in_x, 1.0)) - steep) / turning
+                   : in_x / std::max(advance, kEndSmallest_mm);
     }
 
     // Noise of x, from second differences: 0 on an exact grid; the median passes over missing returns.
@@ -210,6 +253,30 @@ class ContourEnd final : public FeatureFinder {
         for (std::size_t i = 1; i + 1 < fit_x_.size(); ++i)
             scratch_.push_back(std::abs(fit_x_[i - 1] - 2 * fit_x_[i] + fit_x_[i + 1]));
         return scratch_.size() < kEndFewestSteps ? 0 : kMadToSigma * median(scratch_) / std::sqrt(6.0);
+    }
+
+    // Where an arc turns away to a steep end: the angle at which there is too little light for a return scatters with the
+    // surface, and an even grid may have been laid over points that are nearly as far apart as its own.
+    double grazing_variance(const EndCurve& curve, const Eigen::Vector2d& tangent, double pitch,
+                            double apart) const {
+        const double turning = turning_away(curve, tangent);
+        const double steep = std::acos(std::min(std::abs(tangent.x()), 1.0)) + turning * pitch;
+        const double share =
+            std::clamp((steep - kEndGrazed_rad) / (kEndGrazing_rad - kEndGrazed_rad), 0.0, 1.0);
+        if (!(turning > 0) || !(share > 0)) return 0;
+        const double longest = kEndLongestPitch * fit_length_;
+        const double light = std::min(kEndLight_rad / turning, longest);
+        double grid = 0;
+        if (sideways_noise() < kEndEven * pitch && apart < kEndUnseenApart) {
+            scratch_.clear();
+            for (std::size_t i = 1; i < std::min(fit_x_.size(), kEndSteps + 1); ++i)
+                scratch_.push_back(std::abs(fit_x_[i] - fit_x_[i - 1]));
+            const double in_x = median(scratch_);
+            grid = std::min(arc_over((1 + kEndUnseenApart) * in_x, curve, tangent) -
+                                arc_over((1 + apart) * in_x, curve, tangent),
+                            longest);
+        }
+        return share * (light * light + grid * grid / 6);
     }
 
     // How far across the curve the point at s is drawn off by means of neighbours: those at the end are of points inwards

@@ -1,4 +1,5 @@
 #include "core/features/registration/registration_search.h"
+#include "core/features/contour/face_order.h"
 #include "core/features/contour/reduce_contour.h"
 
 #include <algorithm>
@@ -87,6 +88,7 @@ void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin, c
         }
         pitch = contour_pitch(x, z, scratch_);
     }
+    if (order_faces(pitch, x, z)) pitch = contour_pitch(x, z, scratch_);
     solid_x_.clear();
     solid_z_.clear();
     mixed_.clear();

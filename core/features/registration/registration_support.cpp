@@ -6,6 +6,7 @@
 // looked at by itself, so that what fixes it must be there.
 
 #include <Eigen/Eigenvalues>
+#include <utility>
 
 #include "core/features/registration/registration_kernel.h"
 
@@ -241,6 +242,7 @@ ContourMatcher::Impl::Held ContourMatcher::Impl::held(const Finish& found, const
                                                       const Eigen::Vector3d& twist, double telling) const {
     constexpr int kSide = 20;
     constexpr std::size_t kPoints = 1500;
+    constexpr double kGrain = 0.1;
     std::array<double, 2 * kSide + 1> cost;
     const int stride = static_cast<int>(scene.x.size() / kPoints) + 1;
     const double step = search.step_mm() / kSide;
@@ -248,6 +250,12 @@ ContourMatcher::Impl::Held ContourMatcher::Impl::held(const Finish& found, const
     for (int i = -kSide; i <= kSide; ++i) {
         beside.pose = moved_along(found.pose, twist, i * step);
         cost[i + kSide] = support(beside, sigma, stride).contradicted * stride;
+    }
+    // Where the noise is not small beside the steps, what is likely at one of them alone is so by chance.
+    if (sigma > kGrain * step) {
+        double before = cost[0];
+        for (std::size_t i = 1; i + 1 < cost.size(); ++i)
+            before = std::exchange(cost[i], std::max(cost[i], std::min(before, cost[i + 1])));
     }
     const auto best = std::min_element(cost.begin(), cost.end());
     const double least = *best;

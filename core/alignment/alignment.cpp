@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/alignment/contour_ends.h"
 #include "core/alignment/drift.h"
 #include "core/alignment/pass_registration.h"
 #include "core/correction/contour_fit.h"
@@ -23,6 +24,8 @@ constexpr double kSignificant = 3.0;
 constexpr double kLeastTurn_deg = 0.02;
 // A straight profile that slides so far along an axis says nothing about it.
 constexpr double kSlidesAlong = 0.1;
+// Along such a profile travel may run off by 6 degrees to either side; one standard deviation of that.
+constexpr double kUnseenSlope = 0.06;
 constexpr double kStraight_per_mm = 1e-9;
 // The best and the worst of the profiles are taken at this share.
 constexpr double kBestShare = 0.1;
@@ -140,6 +143,10 @@ void state_direction(const Drift& drift, double jitter_mm, AlignmentResult& resu
     result.roll_deg = drift.phi.coefficient[1] * jitter_mm;
     result.sigma_yaw_deg = deg_from_rad(drift.x.coefficient_sigma[1] / (1 + sx * sx));
     result.sigma_pitch_deg = deg_from_rad(drift.z.coefficient_sigma[1] / (1 + sz * sz));
+    // Drift along a straight profile is not seen; what it has of the other axis is as unsure.
+    const double aslant = std::abs(drift.along.x() * drift.along.y()) * kUnseenSlope;
+    result.sigma_yaw_deg = std::hypot(result.sigma_yaw_deg, deg_from_rad(aslant));
+    result.sigma_pitch_deg = std::hypot(result.sigma_pitch_deg, deg_from_rad(aslant));
     if (std::abs(drift.along.x()) > kSlidesAlong) result.sigma_yaw_deg = kInfinity;
     if (std::abs(drift.along.y()) > kSlidesAlong) result.sigma_pitch_deg = kInfinity;
     // R_z(a) R_x(b) takes the sensor's Y to the contour's direction (sx, 1, sz).
@@ -307,7 +314,6 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
 
     Drift drift;
     drift.along = common_sliding(best->found);
-    result.sliding = !drift.along.isZero();
     result.offsets[best->index].ok = true;
     for (std::size_t i = 0; i < pass.size(); ++i) {
         const Registered& r = best->found[i];
@@ -318,6 +324,7 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
     if (!drift.fit()) return too_few(drift.travel_mm.size() + 1);
     const double scatter_mm = scatter_beyond(*best, drift, options.jitter_mm);
     const double apart_mm = follow_point(*best, pass, options, drift, result.offsets);
+    result.sliding = !drift.along.isZero();
     state_direction(drift, options.jitter_mm, result);
     state_error(drift, options.jitter_mm, result);
     const bool lost = state_shape(*best, pass, options, result);

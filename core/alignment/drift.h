@@ -23,6 +23,8 @@ struct Drift {
     PolynomialFit x, z, phi;
     double from = 0, to = 0;  // travel that was seen, the trigger included
     Eigen::Vector2d along = Eigen::Vector2d::Zero();
+    Eigen::Vector2d grain_mm =
+        Eigen::Vector2d::Zero();  // by which x and z step, where they are those of a last point
 
     void add(const TravelOffset& offset);
     // False: too little was seen.

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/alignment/contour_ends.h"
 #include "core/correction/contour_fit.h"
 #include "core/features/contour/contour_noise.h"
 #include "core/median.h"
@@ -22,8 +23,6 @@ constexpr double kNoisy = 1.5;
 // A good one shows most of the contour in most of the profiles.
 constexpr double kWholeShare = 0.85, kGoodShare = 0.8;
 constexpr int kReferencesTried = 2;
-// What lies farther from the contour is no part of it.
-constexpr double kReach_mm = 2.0;
 // A profile within so much of its noise, and of its scatter along itself, is a straight line.
 constexpr double kStraightNoise = 1.5, kStraightShare = 1e-6;
 // Travels as near as these tell no motion from one to the next; it is followed ahead so many times their distance.
@@ -34,10 +33,14 @@ constexpr double kSearched_mm = 2.0, kSearchedPerTravel = 0.3, kSearched_rad = 0
 constexpr double kUsualPoints = 0.8, kQuiet_mm = 1e-6;
 constexpr double kClearlyBetter = 1.02;
 
+}  // namespace
+
 bool usable(const Profile& p, std::size_t i) {
     return std::isfinite(p.x_mm[i]) && std::isfinite(p.z_mm[i]) &&
            !(p.filtered() && p.segment[i] == kOutlier);
 }
+
+namespace {
 
 std::size_t usable_points(const Profile& p) {
     std::size_t count = 0;
@@ -104,7 +107,8 @@ bool accept(const Registration& r, const Eigen::Vector2d& reference, const Eigen
     return out.ok;
 }
 
-// The motion as taken over, i.e. without what a straight line creeps along itself.
+}  // namespace
+
 PlanarMotion motion_of(const Registered& r, const Eigen::Vector2d& reference) {
     const double c = std::cos(r.phi), sn = std::sin(r.phi);
     const Eigen::Vector2d moved =
@@ -112,6 +116,8 @@ PlanarMotion motion_of(const Registered& r, const Eigen::Vector2d& reference) {
         Eigen::Vector2d(c * reference.x() - sn * reference.y(), sn * reference.x() + c * reference.y());
     return {moved.x(), moved.y(), r.phi};
 }
+
+namespace {
 
 // From the trigger outwards, each profile starts where its inner neighbours point to.
 void track(const ContourMatcher& matcher, std::span<const TravelProfile> pass,
@@ -210,8 +216,6 @@ std::optional<Reference> choose_reference(std::span<const TravelProfile> pass,
     return best;
 }
 
-namespace {
-
 // Of a straight line through the values, where it is beyond its noise; else 0.
 double sure_slope(const std::vector<double>& travel, const std::vector<double>& value) {
     constexpr double kSure = 4;  // sigmas
@@ -219,58 +223,6 @@ double sure_slope(const std::vector<double>& travel, const std::vector<double>& 
     const PolynomialFit fit = fit_polynomial(travel, value, 1);
     return fit.ok && std::abs(fit.coefficient[1]) > kSure * fit.coefficient_sigma[1] ? fit.coefficient[1] : 0;
 }
-
-// Where the contour is broken: its last point before and its first behind, and how many points that one is.
-struct Break {
-    Eigen::Vector2d before, after;
-    std::size_t index = 0;
-    bool clear = false;  // no steep flank, whose lines stand as far apart as a narrow one's
-    double grain_before_mm = 0, grain_after_mm = 0;  // from either to its next point
-};
-std::vector<Break> breaks_of(const Profile& p) {
-    constexpr double kOfPitch = 5, kLeast_mm = 0.3, kClear = 3;
-    std::vector<Eigen::Vector2d> points;
-    std::vector<std::size_t> index;
-    for (std::size_t i = 0; i < p.size(); ++i) {
-        if (!usable(p, i)) continue;
-        points.emplace_back(p.x_mm[i], p.z_mm[i]);
-        index.push_back(i);
-    }
-    std::vector<double> apart;
-    for (std::size_t i = 1; i < points.size(); ++i) apart.push_back((points[i] - points[i - 1]).norm());
-    std::vector<double> sorted = apart;
-    const double least = std::max(kOfPitch * median(sorted), kLeast_mm);
-    std::vector<Break> out;
-    for (std::size_t i = 0; i < apart.size(); ++i)
-        if (apart[i] > least)
-            out.push_back({points[i], points[i + 1], index[i + 1], apart[i] > kClear * least,
-                           i > 0 ? apart[i - 1] : 0, i + 1 < apart.size() ? apart[i + 1] : 0});
-    return out;
-}
-
-// Where the contour begins or ends: at the profile's own ends and on either side of a break.
-struct ContourEnd {
-    Eigen::Vector2d at;
-    bool begins = false, clear = true;
-    double grain_mm = 0;  // to its next point
-};
-std::vector<ContourEnd> ends_of(const Profile& p) {
-    std::vector<ContourEnd> out;
-    std::vector<Eigen::Vector2d> points;
-    for (std::size_t i = 0; i < p.size(); ++i)
-        if (usable(p, i)) points.emplace_back(p.x_mm[i], p.z_mm[i]);
-    if (points.size() < 2) return out;
-    const std::size_t last = points.size() - 1;
-    out.push_back({points.front(), true, true, (points[1] - points[0]).norm()});
-    for (const Break& b : breaks_of(p)) {
-        out.push_back({b.before, false, b.clear, b.grain_before_mm});
-        out.push_back({b.after, true, b.clear, b.grain_after_mm});
-    }
-    out.push_back({points.back(), false, true, (points[last] - points[last - 1]).norm()});
-    return out;
-}
-
-}  // namespace
 
 std::optional<Reference> register_piece(const Reference& reference, std::span<const TravelProfile> pass,
                                         const std::vector<std::size_t>& order, const Eigen::Vector2d& point,
@@ -310,57 +262,6 @@ std::optional<Reference> register_piece(const Reference& reference, std::span<co
     return r;
 }
 
-EndOffsets end_offsets(const Reference& reference, std::span<const TravelProfile> pass,
-                       const std::vector<std::size_t>& order, const Eigen::Vector2d& point) {
-    constexpr double kNear_mm = 1.5, kLost_mm = 2;
-    const std::vector<ContourEnd> taught = ends_of(pass[reference.index].profile);
-    const auto off = [&](const ContourEnd& e) { return (e.at - point).norm(); };
-    const auto own = std::min_element(taught.begin(), taught.end(),
-                                      [&](const auto& a, const auto& b) { return off(a) < off(b); });
-    if (own == taught.end() || off(*own) > kNear_mm || !own->clear) return {};
-    EndOffsets answer{std::vector<std::optional<Eigen::Vector2d>>(pass.size())};
-    auto& out = answer.off;
-    std::vector<double> grains{own->grain_mm};
-    const double y0 = pass[reference.index].travel_mm;
-    // Outwards from the reference, each searched for where its inner neighbour's was.
-    for (const bool forward : {true, false}) {
-        std::vector<std::size_t> outwards;
-        for (const std::size_t i : order)
-            if (i != reference.index && (pass[i].travel_mm >= y0) == forward) outwards.push_back(i);
-        std::stable_sort(outwards.begin(), outwards.end(), [&](auto a, auto b) {
-            return std::abs(pass[a].travel_mm - y0) < std::abs(pass[b].travel_mm - y0);
-        });
-        Eigen::Vector2d last = Eigen::Vector2d::Zero();
-        for (const std::size_t i : outwards) {
-            const Registered& f = reference.found[i];
-            if (!f.ok) continue;
-            const PlanarMotion motion = motion_of(f, point);
-            const Eigen::Rotation2Dd back(-motion.phi_rad);
-            double nearest = kLost_mm, grain_mm = 0;
-            for (const ContourEnd& e : ends_of(pass[i].profile)) {
-                if (e.begins != own->begins) continue;
-                const Eigen::Vector2d moved =
-                    back * (e.at - Eigen::Vector2d(motion.dx_mm, motion.dz_mm)) - own->at;
-                if ((moved - last).norm() > nearest) continue;
-                nearest = (moved - last).norm();
-                out[i] = moved;
-                grain_mm = e.grain_mm;
-            }
-            if (!out[i]) continue;
-            last = *out[i];
-            grains.push_back(grain_mm);
-        }
-    }
-    // Now and then a return is missing beside the end.
-    constexpr double kUsual = 0.8;
-    const auto usual =
-        grains.begin() + static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(grains.size() - 1));
-    std::nth_element(grains.begin(), usual, grains.end());
-    answer.grain_mm = *usual;
-    answer.broken = taught.size() > 2;
-    return answer;
-}
-
 double growth_mm(const Reference& reference, std::span<const TravelProfile> pass,
                  const Eigen::Vector2d& point, double jitter_mm) {
     constexpr int kPieces = 12;
@@ -388,39 +289,6 @@ double growth_mm(const Reference& reference, std::span<const TravelProfile> pass
         down = std::min(down, slope);
     }
     return (up - down) * jitter_mm;
-}
-
-double parting_mm(const Reference& reference, std::span<const TravelProfile> pass,
-                  const Eigen::Vector2d& point, double jitter_mm) {
-    const std::vector<Break> taught = breaks_of(pass[reference.index].profile);
-    struct Width {
-        std::vector<double> travel, along, across;
-    };
-    std::vector<Width> widths(taught.size());
-    for (std::size_t i = 0; i < pass.size(); ++i) {
-        const Registered& f = reference.found[i];
-        if (i != reference.index && !f.ok) continue;
-        const PlanarMotion motion = i == reference.index ? PlanarMotion{} : motion_of(f, point);
-        const std::vector<Break> seen = breaks_of(pass[i].profile);
-        for (std::size_t k = 0; k < taught.size(); ++k) {
-            const Eigen::Vector2d before = motion * taught[k].before, after = motion * taught[k].after;
-            const auto off = [&](const Break& b) {
-                return std::max((b.before - before).norm(), (b.after - after).norm());
-            };
-            const auto nearest = std::min_element(
-                seen.begin(), seen.end(), [&](const Break& a, const Break& b) { return off(a) < off(b); });
-            if (nearest == seen.end() || off(*nearest) > kReach_mm) continue;
-            const Eigen::Vector2d width =
-                Eigen::Rotation2Dd(-motion.phi_rad) * (nearest->after - nearest->before);
-            widths[k].travel.push_back(pass[i].travel_mm);
-            widths[k].along.push_back(width.x());
-            widths[k].across.push_back(width.y());
-        }
-    }
-    double most = 0;
-    for (const Width& w : widths)
-        most = std::max(most, std::hypot(sure_slope(w.travel, w.along), sure_slope(w.travel, w.across)));
-    return most * jitter_mm;
 }
 
 }  // namespace seamwright::alignment

@@ -31,8 +31,17 @@ struct Reference {
     bool good = false;   // most do, and with most of the contour
 };
 
+// Neither lost nor left out by the filter.
+bool usable(const Profile& p, std::size_t i);
 // Of the usable points.
 Eigen::Vector2d centroid(const Profile& p);
+
+// The motion as taken over, i.e. without what a straight line creeps along itself.
+PlanarMotion motion_of(const Registered& r, const Eigen::Vector2d& reference);
+// Of a straight line through the values, where it is beyond its noise; else 0.
+double sure_slope(const std::vector<double>& travel, const std::vector<double>& value);
+// What lies farther from the contour is no part of it.
+inline constexpr double kReach_mm = 2.0;
 
 // The nearest to travel 0 that has about as many points and about as little noise as the pass usually shows,
 // and to which most of the pass registers. Where none is good, the best of a few.
@@ -47,24 +56,8 @@ std::optional<Reference> register_piece(const Reference& reference, std::span<co
                                         const std::vector<std::size_t>& order, const Eigen::Vector2d& point,
                                         double within_mm);
 
-// Where in every profile that end of the contour stands, or that side of a break, on which the reference point lies (within 1.5
-// mm): off its place by the registration, in the reference's frame; nothing where it is not seen. Empty: none is as near.
-// An end is the last point of a contour, which steps by whole points where the edge moves by less: by up to `grain_mm`.
-struct EndOffsets {
-    std::vector<std::optional<Eigen::Vector2d>> off;
-    double grain_mm = 0;
-    bool broken = false;  // the contour has more ends than its two
-};
-EndOffsets end_offsets(const Reference& reference, std::span<const TravelProfile> pass,
-                       const std::vector<std::size_t>& order, const Eigen::Vector2d& point);
-
 // How much the pieces of the contour grow or sink against each other within the jitter, beyond their noise.
 double growth_mm(const Reference& reference, std::span<const TravelProfile> pass,
                  const Eigen::Vector2d& point, double jitter_mm);
-
-// How much the two sides of a break in the contour (a gap, a sheet over another) part within the jitter, beyond their noise:
-// the most over its breaks.
-double parting_mm(const Reference& reference, std::span<const TravelProfile> pass,
-                  const Eigen::Vector2d& point, double jitter_mm);
 
 }  // namespace seamwright::alignment

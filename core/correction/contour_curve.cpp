@@ -20,10 +20,12 @@ constexpr double kCurveTukey = 6, kCurveKept = 4, kCurveLeastGate = 1e-9;
 constexpr double kCurveRounding = 1e-18;    // squared residual: no noise to test against
 constexpr double kCurveNoMisfit = 1e-14;    // squared residual: nothing is left to be explained
 constexpr double kCurveSignificant = 1e-3;  // of the F test for a higher order
+// Of values that step by a grain: what is no gross error, and the share of its square that a step may leave of a line.
+constexpr double kCurveSteps = 1.5, kCurveStepSquare = 0.25;
 
 }  // namespace
 
-PolynomialFit fit_polynomial(std::span<const double> y, std::span<const double> v, int order) {
+PolynomialFit fit_polynomial(std::span<const double> y, std::span<const double> v, int order, double grain) {
     PolynomialFit out;
     out.order = order;
     const auto n = static_cast<Eigen::Index>(y.size());
@@ -51,7 +53,8 @@ PolynomialFit fit_polynomial(std::span<const double> y, std::span<const double> 
         for (Eigen::Index i = 0; i < n; ++i) size[static_cast<std::size_t>(i)] = std::abs(residual[i]);
         robust = kMadToSigma * median(size);
         if (settled || round == 29) break;
-        const double cut = std::max(kCurveTukey * robust, kCurveLeastGate);
+        const double cut =
+            std::max({kCurveTukey * robust, kCurveLeastGate, kCurveTukey / kCurveKept * kCurveSteps * grain});
         for (Eigen::Index i = 0; i < n; ++i) {
             const double u = residual[i] / cut;
             weight[i] = std::abs(u) < 1 ? (1 - u * u) * (1 - u * u) : 0.0;
@@ -59,7 +62,7 @@ PolynomialFit fit_polynomial(std::span<const double> y, std::span<const double> 
     }
     // The last word is plain least squares on what lies within kCurveKept robust sigma, so that its covariance is the
     // usual one.
-    const double keep = std::max(kCurveKept * robust, kCurveLeastGate);
+    const double keep = std::max({kCurveKept * robust, kCurveLeastGate, kCurveSteps * grain});
     std::vector<Eigen::Index> kept;
     for (Eigen::Index i = 0; i < n; ++i) {
         if (std::abs(residual[i]) <= keep) kept.push_back(i);
@@ -96,16 +99,16 @@ double f_test(double value, double over, double under) {
     return Eigen::numext::betainc(0.5 * under, 0.5 * over, under / (under + over * value));
 }
 
-PolynomialFit fit_lowest_order(std::span<const double> y, std::span<const double> v, int lowest,
-                               int highest) {
+PolynomialFit fit_lowest_order(std::span<const double> y, std::span<const double> v, int lowest, int highest,
+                               double grain) {
     std::vector<double> different(y.begin(), y.end());
     std::sort(different.begin(), different.end());
     different.erase(std::unique(different.begin(), different.end()), different.end());
-    PolynomialFit best = fit_polynomial(y, v, lowest);
+    PolynomialFit best = fit_polynomial(y, v, lowest, grain);
     for (int order = lowest + 1; order <= highest; ++order) {
         // Three points more than coefficients, or a high order would merely run through the noise.
         if (different.size() < static_cast<std::size_t>(order) + 4) break;
-        const PolynomialFit higher = fit_polynomial(y, v, order);
+        const PolynomialFit higher = fit_polynomial(y, v, order, grain);
         if (!higher.ok || higher.degrees < 1) continue;
         if (!best.ok) {
             best = higher;
@@ -115,8 +118,9 @@ PolynomialFit fit_lowest_order(std::span<const double> y, std::span<const double
         const bool keeps_more = higher.used > best.used + 1;
         const int extra = higher.order - best.order;
         const double floor = kCurveRounding * higher.degrees;
-        const double f =
-            (best.sum_squares - higher.sum_squares) / extra / ((higher.sum_squares + floor) / higher.degrees);
+        const double variance =
+            std::max((higher.sum_squares + floor) / higher.degrees, kCurveStepSquare * grain * grain);
+        const double f = (best.sum_squares - higher.sum_squares) / extra / variance;
         const bool better = best.sum_squares > kCurveNoMisfit * best.used &&
                             f_test(f, extra, higher.degrees) < kCurveSignificant;
         if (better || keeps_more) best = higher;

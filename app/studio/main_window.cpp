@@ -16,6 +16,7 @@
 #include <cmath>
 
 #include "app/studio/event_list.h"
+#include "app/studio/page_area.h"
 #include "app/studio/studio.h"
 #include "widgets/jog/jog_panel.h"
 #include "widgets/pages/accept/accept_page.h"
@@ -262,12 +263,8 @@ void MainWindow::make_central() {
     for (StepPage* page : pages) {
         step_pages_ << page;
         connect(page, &StepPage::step_wanted, this, &MainWindow::lead_to);
-        auto* scroll = new QScrollArea;
-        scroll->setWidgetResizable(true);
-        scroll->setFrameShape(QFrame::NoFrame);
-        scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-        scroll->setFocusPolicy(Qt::NoFocus);
-        scroll->setWidget(page);
+        auto* scroll = new PageArea(page);
+        page_areas_ << scroll;
         if (!page->head()) {
             pages_->addWidget(scroll);
             continue;
@@ -283,7 +280,8 @@ void MainWindow::make_central() {
     columns->addWidget(pages_, 1);
     connect(rail_, &StepRail::step_chosen, this, &MainWindow::show_step);
 
-    // Over the page's lower end: nothing moves from under the pointer when it comes or goes.
+    // Over the page's lower end: nothing moves from under the pointer when it comes or goes, and what it covers can be scrolled
+    // above it.
     trouble_ = new QFrame(central);
     trouble_->setObjectName("trouble");
     auto* trouble_row = new QHBoxLayout(trouble_);

@@ -252,6 +252,9 @@ void MainWindow::make_central() {
         calibrating_ = words;
         refresh_next();
     });
+    connect(calibrate, &CalibratePage::connect_wanted, this, [this] {
+        if (take_typed()) desk_.worker().connect_devices();
+    });
     const std::initializer_list<StepPage*> pages{new CellPage(desk_, views_),
                                                  calibrate,
                                                  new TeachPage(desk_, views_),

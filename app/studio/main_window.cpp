@@ -16,6 +16,7 @@
 #include <cmath>
 
 #include "app/studio/event_list.h"
+#include "app/studio/page_area.h"
 #include "app/studio/studio.h"
 #include "widgets/jog/jog_panel.h"
 #include "widgets/pages/accept/accept_page.h"
@@ -251,6 +252,9 @@ void MainWindow::make_central() {
         calibrating_ = words;
         refresh_next();
     });
+    connect(calibrate, &CalibratePage::connect_wanted, this, [this] {
+        if (take_typed()) desk_.worker().connect_devices();
+    });
     const std::initializer_list<StepPage*> pages{new CellPage(desk_, views_),
                                                  calibrate,
                                                  new TeachPage(desk_, views_),
@@ -262,12 +266,8 @@ void MainWindow::make_central() {
     for (StepPage* page : pages) {
         step_pages_ << page;
         connect(page, &StepPage::step_wanted, this, &MainWindow::lead_to);
-        auto* scroll = new QScrollArea;
-        scroll->setWidgetResizable(true);
-        scroll->setFrameShape(QFrame::NoFrame);
-        scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-        scroll->setFocusPolicy(Qt::NoFocus);
-        scroll->setWidget(page);
+        auto* scroll = new PageArea(page);
+        page_areas_ << scroll;
         if (!page->head()) {
             pages_->addWidget(scroll);
             continue;
@@ -283,7 +283,8 @@ void MainWindow::make_central() {
     columns->addWidget(pages_, 1);
     connect(rail_, &StepRail::step_chosen, this, &MainWindow::show_step);
 
-    // Over the page's lower end: nothing moves from under the pointer when it comes or goes.
+    // Over the page's lower end: nothing moves from under the pointer when it comes or goes, and what it covers can be scrolled
+    // above it.
     trouble_ = new QFrame(central);
     trouble_->setObjectName("trouble");
     auto* trouble_row = new QHBoxLayout(trouble_);

@@ -19,6 +19,7 @@ class Studio;
 class StepPage;
 class RunPage;
 class ManualWindow;
+class PageArea;
 
 class MainWindow : public QMainWindow {
     Q_OBJECT
@@ -119,6 +120,7 @@ class MainWindow : public QMainWindow {
     QTimer idle_timer_;
     QAction *sign_in_ = nullptr, *sign_out_ = nullptr;
     QByteArray default_layout_;
+    QList<PageArea*> page_areas_;
 };
 
 }  // namespace seamwright

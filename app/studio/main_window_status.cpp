@@ -11,7 +11,9 @@
 
 #include "app/studio/dialogs/sign_in_dialog.h"
 #include "app/studio/main_window.h"
+#include "app/studio/page_area.h"
 #include "app/studio/studio.h"
+#include "widgets/into_view.h"
 #include "widgets/menu_signs.h"
 #include "widgets/pages/run_page.h"
 #include "widgets/style.h"
@@ -155,6 +157,11 @@ void MainWindow::show_message(const QString& sentence, const char* tone) {
     place_message();
     trouble_->show();
     trouble_->raise();
+    // What it is about has the focus.
+    QWidget* field = QApplication::focusWidget();
+    if (field && pages_->isAncestorOf(field) &&
+        QRect(field->mapTo(centralWidget(), QPoint()), field->size()).intersects(trouble_->geometry()))
+        bring_into_view(field);
 }
 
 void MainWindow::place_message() {
@@ -164,6 +171,7 @@ void MainWindow::place_message() {
     const int height = std::min(trouble_->heightForWidth(width), pages_->height());
     const QPoint lower_left = pages_->mapTo(centralWidget(), QPoint(kEdge_px, pages_->height() - kEdge_px));
     trouble_->setGeometry(lower_left.x(), lower_left.y() - height, width, height);
+    for (PageArea* area : page_areas_) area->keep_free(std::min(height + kEdge_px, area->height() / 2));
 }
 
 void MainWindow::ask_who() {
@@ -215,6 +223,10 @@ bool MainWindow::eventFilter(QObject* object, QEvent* event) {
         case QEvent::Resize:
         case QEvent::Move:
             if (object == pages_ && trouble_->isVisible()) place_message();
+            break;
+        case QEvent::Hide:
+            if (object == trouble_)
+                for (PageArea* area : page_areas_) area->keep_free(0);
             break;
         case QEvent::ShortcutOverride:
             // A field in which nothing is being typed leaves undo and redo to the project.

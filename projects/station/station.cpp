@@ -92,8 +92,60 @@ Expected<void> Station::edit(const Project& project) {
     return {};
 }
 
+namespace {
+
+template <class Setup>
+bool has(const std::vector<Setup>& setups, const std::string& id) {
+    return std::ranges::any_of(setups, [&](const Setup& s) { return s.id == id; });
+}
+
+template <class Setup>
+bool same_device(const Setup& a, const Setup& b) {
+    return a.driver == b.driver && a.settings == b.settings;
+}
+
+// The links by the names that their devices have in `after`; those whose devices keep their names stay as they are. False: one's
+// device is not in it any more, or its name is now another connected device's.
+template <class Setup, class Link>
+bool rename_links(std::map<std::string, std::unique_ptr<Link>>& links, const std::vector<Setup>& before,
+                  const std::vector<Setup>& after) {
+    std::map<std::string, std::unique_ptr<Link>> renamed;
+    for (const Setup& setup : before) {
+        if (!links.contains(setup.id)) continue;
+        const auto same_name = std::ranges::find(after, setup.id, &Setup::id);
+        if (same_name != after.end()) {
+            const bool of_another = std::ranges::any_of(before, [&](const Setup& other) {
+                return same_device(*same_name, other) && !same_device(setup, other);
+            });
+            if (of_another && !same_device(*same_name, setup)) return false;
+            continue;
+        }
+        const auto now = std::ranges::find_if(after, [&](const Setup& s) {
+            return same_device(s, setup) && !has(before, s.id) && !renamed.contains(s.id);
+        });
+        if (now == after.end()) return false;
+        renamed[now->id] = std::move(links[setup.id]);
+        links.erase(setup.id);
+    }
+    links.merge(renamed);
+    return true;
+}
+
+template <class Setup, class Link>
+bool has_all(const std::vector<Setup>& setups, const std::map<std::string, std::unique_ptr<Link>>& links) {
+    return std::ranges::all_of(links, [&](const auto& link) { return has(setups, link.first); });
+}
+
+}  // namespace
+
 void Station::use(const Project& project) {
-    impl_->project = project;
+    Impl& i = *impl_;
+    const bool names = has_all(project.sensors, i.sensors) && has_all(project.robots, i.robots);
+    if (i.connected &&
+        ((i.recorder && !names) || !rename_links(i.sensors, i.project.sensors, project.sensors) ||
+         !rename_links(i.robots, i.project.robots, project.robots)))
+        i.disconnect();
+    i.project = project;
 }
 
 Expected<std::vector<EditOfOthers>> measuring_edits(const ProjectFile& file) {

@@ -84,7 +84,8 @@ class Station {
     // refused by the gate.
     Expected<std::vector<EditOfOthers>> follow_file();
     // Takes over without saving, for an editor whose document is saved by its own command: runs keep the
-    // setup they were made with in any case.
+    // setup they were made with in any case. A connected device that has only another name there goes on under that; where
+    // one is gone, and where names change while it is recorded, the station is disconnected.
     void use(const Project& project);
 
     // Opens every device of the project through the registry and notes who answered in the project

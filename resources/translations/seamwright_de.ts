@@ -3893,6 +3893,34 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <source>Bring the tip to the sphere by hand or slowly by jogging, then capture. Turn the flange between touches.</source>
         <translation>Die Spitze von Hand oder langsam verfahrend an die Kugel bringen, dann aufnehmen. Den Flansch zwischen den Berührungen drehen.</translation>
     </message>
+    <message>
+        <source>Connect</source>
+        <translation>Verbinden</translation>
+    </message>
+    <message>
+        <source>Open all sensors and robots of the project</source>
+        <translation>Alle Sensoren und Roboter des Projekts öffnen</translation>
+    </message>
+    <message>
+        <source>Sensor %1 is not in the project any more, by this name. Undo that in the project (Ctrl+Z), or go back to all methods.</source>
+        <translation>Sensor %1 ist unter diesem Namen nicht mehr im Projekt. Das im Projekt rückgängig machen (Strg+Z) oder zurück zu allen Verfahren gehen.</translation>
+    </message>
+    <message>
+        <source>This method needs a robot, and the project has none: add one on the step Cell.</source>
+        <translation>Dieses Verfahren braucht einen Roboter, und das Projekt hat keinen: im Schritt Zelle einen hinzufügen.</translation>
+    </message>
+    <message>
+        <source>Robot %1 is not in the project any more, by this name. Undo that in the project (Ctrl+Z), or go back to all methods.</source>
+        <translation>Roboter %1 ist unter diesem Namen nicht mehr im Projekt. Das im Projekt rückgängig machen (Strg+Z) oder zurück zu allen Verfahren gehen.</translation>
+    </message>
+    <message>
+        <source>The devices are not connected: connect them to capture, or load from files what was captured.</source>
+        <translation>Die Geräte sind nicht verbunden: zum Aufnehmen verbinden, oder Aufnahmen aus Dateien laden.</translation>
+    </message>
+    <message>
+        <source>not connected</source>
+        <translation>nicht verbunden</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::Histogram</name>

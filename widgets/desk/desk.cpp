@@ -87,6 +87,8 @@ void Desk::changed() {
         selection_.select_spot("");
     if (!selection_.region().empty() && index_of<Region>(project_, selection_.region()) < 0)
         selection_.select_region("");
+    // Nobody has said to stand beside a robot that bears the name of another from now on.
+    std::erase_if(attended_, [&](const std::string& id) { return !find_robot(project_, id); });
     select_measured_type();
     set_recipes();
     derive();

@@ -7,13 +7,14 @@
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
 #include "widgets/editors/settings_editor.h"
+#include "widgets/into_view.h"
 
 namespace seamwright {
 namespace {
 
 template <class Editor>
-bool refuses(const QWidget* widget) {
-    const auto* editor = qobject_cast<const Editor*>(widget);
+bool refuses(QWidget* widget) {
+    const auto* editor = qobject_cast<Editor*>(widget);
     return editor && editor->refused();
 }
 
@@ -23,11 +24,15 @@ bool leave_field(QWidget& whole) {
     const QPointer<QWidget> field = QApplication::focusWidget();
     if (!field || !whole.isAncestorOf(field)) return true;
     field->clearFocus();
-    bool refused = false;
-    for (const QWidget* up = field; up && !refused; up = up->parentWidget())
-        refused = refuses<ParameterEditor>(up) || refuses<PoseEditor>(up) || refuses<NameEditor>(up) ||
-                  refuses<SettingsEditor>(up);
+    QWidget* refused = field;
+    while (refused && !refuses<ParameterEditor>(refused) && !refuses<PoseEditor>(refused) &&
+           !refuses<NameEditor>(refused) && !refuses<SettingsEditor>(refused))
+        refused = refused->parentWidget();
     if (field) field->setFocus();
+    if (auto* form = qobject_cast<SettingsEditor*>(refused))
+        form->show_refused();  // it may be another of its fields
+    else if (refused)
+        bring_into_view(refused);
     return !refused;
 }
 

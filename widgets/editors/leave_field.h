@@ -5,8 +5,8 @@
 
 namespace seamwright {
 
-// The field within `whole` that has the focus, as if it were left for a moment. False: what it holds is refused there, and
-// stays.
+// The field within `whole` that has the focus, as if it were left for a moment. False: what it holds is refused there, or what
+// a field of the same form does; it stays, has the focus and is scrolled to.
 bool leave_field(QWidget& whole);
 
 }  // namespace seamwright

@@ -214,7 +214,10 @@ bool SettingsEditor::refused() const {
 void SettingsEditor::show_refused() {
     const auto row =
         std::ranges::find_if(impl_->rows, [](const auto& one) { return !one->reason.isEmpty(); });
-    if (row != impl_->rows.end()) bring_into_view((*row)->problem);
+    if (row == impl_->rows.end()) return;
+    // Only what is typed is refused here.
+    (*row)->text->setFocus(Qt::OtherFocusReason);
+    bring_into_view((*row)->line);
 }
 
 void SettingsEditor::show_all(bool all) {

@@ -25,7 +25,7 @@ class SettingsEditor : public QWidget {
     void set_value(const nlohmann::json& settings);  // no signal
     const nlohmann::json& value() const;
     bool refused() const;  // of any field
-    void show_refused();   // scrolls to the first of them
+    void show_refused();   // gives the first of them the focus and scrolls to it
     void show_all(bool all);
 
   signals:

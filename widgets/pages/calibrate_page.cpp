@@ -102,6 +102,7 @@ CalibratePage::CalibratePage(Desk& desk, const Views& views)
     box().addWidget(guided_);
     head.addWidget(guided_->head());
     connect(guided_, &GuidedPage::under_way, this, &CalibratePage::under_way);
+    connect(guided_, &GuidedPage::connect_wanted, this, &CalibratePage::connect_wanted);
     connect(guided_, &GuidedPage::left, this, [this] {
         show_guided(false);
         if (isVisible()) refresh();

@@ -17,6 +17,7 @@ class CalibratePage : public StepPage {
   signals:
     // GuidedPage::under_way
     void under_way(const QString& words);
+    void connect_wanted();  // GuidedPage::connect_wanted
 
   protected:
     void refresh() override;

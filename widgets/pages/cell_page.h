@@ -48,6 +48,7 @@ class CellPage : public StepPage {
     QString refusal() const;  // of what the form has; empty: none
     static QString not_taken(const QString& id, const QString& why);
     Expected<void> apply();  // of the device that is shown
+    void show_refused();
     bool take_or_tell();
     void take_back();  // the form shows the project's again
     void connect_devices();

@@ -6,6 +6,7 @@
 #include "devices/registry.h"
 #include "projects/measure/measure.h"
 #include "widgets/editors/leave_field.h"
+#include "widgets/into_view.h"
 #include "widgets/pages/cell_page.h"
 #include "widgets/shown_text.h"
 
@@ -110,7 +111,7 @@ QString CellPage::take_typed() {
     leave_field(*form_);
     if (!is_pending()) return {};
     if (const QString why = refusal(); !why.isEmpty()) {
-        form_->show_refused();
+        show_refused();
         return not_taken(QString::fromStdString(shown_->id), why) + QChar(0x20) +
                tr("Mend them, or press Esc in the form: the old ones come back.");
     }
@@ -119,6 +120,13 @@ QString CellPage::take_typed() {
         return shown_error(taken.error());
     }
     return {};
+}
+
+// Where it can be mended, or taken back by Esc.
+void CellPage::show_refused() {
+    if (form_->refused()) return form_->show_refused();
+    (settings_->isVisible() ? static_cast<QWidget*>(settings_) : as_text_)->setFocus(Qt::OtherFocusReason);
+    bring_into_view(settings_state_);
 }
 
 bool CellPage::take_or_tell() {

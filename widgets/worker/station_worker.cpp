@@ -365,23 +365,21 @@ void StationWorker::publish(Station& station) {
     emit state_changed(std::move(state));
 }
 
-// A connected device that the project has no more, or under another name, is let go of: nothing could reach it, and its
-// old name would stay on the screen.
+// Where devices have other names, settings, or are gone, nothing of the old ones stays on the screen.
 void StationWorker::take_project(Station& station, const Project& newest) {
+    const auto same = [](const auto& before, const auto& after) {
+        return std::ranges::equal(before, after, [](const auto& a, const auto& b) {
+            return a.id == b.id && a.driver == b.driver && a.settings == b.settings;
+        });
+    };
     const Project& before = station.project();
-    const bool gone =
-        std::any_of(
-            before.sensors.begin(), before.sensors.end(),
-            [&](const SensorSetup& s) { return station.sensor(s.id) && !find_sensor(newest, s.id); }) ||
-        std::any_of(before.robots.begin(), before.robots.end(),
-                    [&](const RobotSetup& r) { return station.robot(r.id) && !find_robot(newest, r.id); });
-    if (gone) {
-        stop_live();
-        feed_.detach();
-        station.disconnect();
-    }
+    if (!station.connected() || (same(before.sensors, newest.sensors) && same(before.robots, newest.robots)))
+        return station.use(newest);
+    stop_live();
+    feed_.detach();
     station.use(newest);
-    if (gone) publish(station);
+    attach_feed(station);
+    publish(station);
 }
 
 void StationWorker::stop_live() {

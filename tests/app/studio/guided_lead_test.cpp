@@ -5,6 +5,7 @@
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/session/guide.h"
 #include "tests/app/studio/guided.h"
+#include "widgets/calibrate/target_view.h"
 #include "widgets/desk/calibration_series.h"
 
 namespace seamwright {
@@ -84,6 +85,70 @@ TEST_F(GuidedLead, FromNothingToTheUse) {
     EXPECT_EQ(desk().project().sensors.at(0).calibration_id, desk().project().calibrations.back().id);
     EXPECT_FALSE(lead->isVisible()) << "there is nothing left to do";
     EXPECT_TRUE(bar->accessibleName().startsWith("Next: ")) << bar->accessibleName().toStdString();
+}
+
+// Whatever the method: without devices the page says so where it cannot scroll away, and its key connects them.
+TEST_F(GuidedLead, WithoutDevicesEveryMethodSaysSoAndLeadsToThem) {
+    make_project();
+    studio.emplace(*qApp, options());
+    window().resize(1280, 800);
+    window().show();
+    me.emplace(window());
+    const auto connect = [&](bool on) {
+        on ? desk().worker().connect_devices() : desk().worker().disconnect_devices();
+        return me->wait([&] { return desk().station().connected == on && !desk().worker().busy(); });
+    };
+    ASSERT_TRUE(connect(false));
+    me->step(2);
+    auto* lead = window().findChild<QPushButton*>("calibration_lead");
+    for (const CalibrationMethod& method : calibration_methods()) {
+        if (!method.guided) continue;
+        me->click("begin_" + QString::fromStdString(method.id));
+        ASSERT_TRUE(lead->isVisible()) << method.id;
+        EXPECT_TRUE(lead->isEnabled()) << method.id;
+        const QString stage = me->text_of("calibration_stage");
+        if (method.capture == CaptureKind::files) {
+            EXPECT_EQ(lead->text(), "Load from files") << method.id;
+            EXPECT_FALSE(stage.contains("not connected")) << method.id;
+        } else {
+            EXPECT_EQ(lead->text(), "Connect") << method.id;
+            EXPECT_TRUE(stage.contains("The devices are not connected")) << method.id;
+            EXPECT_TRUE(me->find<QPushButton>("calibration_load")->isEnabled()) << method.id;
+        }
+        if (method.id == "tcp-sphere") me->picture("guided_lead_offline");
+        me->click("calibration_back");
+    }
+    me->click("begin_tcp-sphere");
+    me->click("calibration_lead");
+    ASSERT_TRUE(me->wait([&] { return desk().station().connected && lead->text() == "Set up the target"; }));
+    EXPECT_FALSE(me->text_of("calibration_stage").contains("not connected"));
+    EXPECT_FALSE(window().findChild<QPushButton*>("calibration_connect")->isVisible());
+    // What the sensor saw is no live picture when it has gone.
+    auto* view = window().findChild<TargetView*>();
+    ASSERT_TRUE(me->wait([&] { return view->accessibleDescription().contains("sensor A"); }))
+        << view->accessibleDescription().toStdString();
+    ASSERT_TRUE(connect(false));
+    ASSERT_TRUE(me->wait([&] { return view->accessibleDescription() == "not connected"; }))
+        << view->accessibleDescription().toStdString();
+}
+
+// A sensor or robot that was renamed or removed beneath the page.
+TEST_F(GuidedLead, ADeviceThatIsGoneIsNamed) {
+    begin();
+    for (const bool sensor : {true, false}) {
+        ASSERT_TRUE(sensor ? desk().rename<SensorSetup>("A", "left")
+                           : desk().rename<RobotSetup>("R1", "big"));
+        EXPECT_TRUE(me->wait([&] {
+            return me->text_of("calibration_stage")
+                .contains(sensor ? "Sensor A is not in the project any more"
+                                 : "Robot R1 is not in the project any more");
+        }));
+        desk().undo_stack().undo();
+        EXPECT_TRUE(me->wait([&] { return !me->text_of("calibration_stage").contains("any more"); }));
+        EXPECT_TRUE(desk().station().connected);
+    }
+    ASSERT_TRUE(me->wait(
+        [&] { return window().findChild<QPushButton*>("calibration_lead")->text() == "Set up the target"; }));
 }
 
 // A robot that scatters much: what was captured does not serve, and the key that is marked captures more, round by round;

@@ -8,6 +8,8 @@
 #include <QLineEdit>
 #include <QMenu>
 #include <QMessageBox>
+#include <QScrollArea>
+#include <QScrollBar>
 #include <QToolTip>
 #include <QWheelEvent>
 
@@ -95,6 +97,57 @@ TEST_F(Edits, SettingsOfADeviceThatAreTypedCountOnSaveAndOnConnect) {
     EXPECT_FALSE(desk().modified());
     desk().undo_stack().undo();
     EXPECT_EQ(exposure(), 126.5) << "as any other edit";
+}
+
+// Wherever a field stood on the page, and whoever of the form had the focus: the message that refuses it lies beside it.
+TEST_F(Edits, ARefusedSettingIsNeverUnderTheMessageThatRefusesIt) {
+    for (const char* language : {"en", "de"}) {
+        start(false, language);
+        DeskPerson me(window());
+        me.step(1);
+        (void)setting("setting_seed");
+        QStringList names;
+        for (const QLineEdit* line : window().findChildren<QLineEdit*>())
+            if (line->isVisible() && line->objectName().startsWith("setting_") &&
+                line->alignment().testFlag(Qt::AlignRight))
+                names << line->objectName();
+        ASSERT_GE(names.size(), 8);
+        auto* frame = window().findChild<QFrame*>("trouble");
+        QScrollArea* area = nullptr;
+        for (QWidget* up = setting("setting_seed"); up && !area; up = up->parentWidget())
+            area = qobject_cast<QScrollArea*>(up);
+        ASSERT_TRUE(area);
+        for (const QString& name : names) {
+            QLineEdit* line = setting(name.toUtf8());
+            type(line, "abc");
+            // Left for another one of the form; then it stands at the lower end, where messages lie.
+            QLineEdit* other =
+                setting(name == names.front() ? names.back().toUtf8() : names.front().toUtf8());
+            other->setFocus();
+            const int below = line->mapTo(area->widget(), QPoint(0, line->height())).y();
+            area->verticalScrollBar()->setValue(below - area->viewport()->height());
+            me.shortcut(Qt::Key_S);
+            QTest::qWait(50);
+            EXPECT_FALSE(trouble().isEmpty()) << name.toStdString();
+            EXPECT_TRUE(line->hasFocus()) << name.toStdString() << ": Esc would not reach it";
+            const QWidget* row = line->parentWidget();  // with its name and why it is refused
+            EXPECT_EQ(row->visibleRegion().boundingRect(), row->rect()) << name.toStdString();
+            const QRect at(row->mapTo(&window(), QPoint()), row->size());
+            const QRect over(frame->mapTo(&window(), QPoint()), frame->size());
+            EXPECT_FALSE(at.intersects(over)) << name.toStdString();
+            if (name == names.back())
+                window().grab().save(QString(SEAMWRIGHT_SCREENS) + "/refused_" + language + ".png");
+            QTest::keyClick(line, Qt::Key_Escape);
+            EXPECT_NE(line->text(), "abc");
+            me.shortcut(Qt::Key_S);
+            if (frame->isVisible()) me.click("dismiss");
+        }
+        // The page's end can be read while a message lies over it.
+        emit desk().trouble("Something went wrong somewhere.");
+        area->verticalScrollBar()->setValue(area->verticalScrollBar()->maximum());
+        const int end = area->widget()->mapTo(&window(), QPoint(0, area->widget()->height())).y();
+        EXPECT_LE(end, frame->mapTo(&window(), QPoint()).y());
+    }
 }
 
 TEST_F(Edits, ASettingThatIsRefusedHoldsSavingUpUntilItIsMended) {

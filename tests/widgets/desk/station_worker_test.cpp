@@ -115,6 +115,103 @@ class Cancelling : public testing::Test {
     }
 };
 
+TEST_F(Cancelling, ADeviceThatIsRenamedStaysConnected) {
+    teach_all();
+    const int connection = desk.station().connection;
+    int interrupted = 0;
+    QObject here;
+    QObject::connect(&worker, &StationWorker::state_changed, &here,
+                     [&](const auto& state) { interrupted += !state->connected; });
+    const auto shown = [&](const std::string& sensor, const std::string& robot) {
+        return wait_until([&] {
+            const StationState& s = desk.station();
+            return s.sensors.size() == 1 && s.robots.size() == 1 && s.sensors[0].id == sensor &&
+                   s.robots[0].id == robot && s.robots[0].trouble.empty() && desk.live().age(sensor);
+        });
+    };
+    ASSERT_TRUE(desk.rename<SensorSetup>("A", "left"));
+    EXPECT_TRUE(shown("left", "R1"));
+    EXPECT_FALSE(desk.live().attached("A"));
+    ASSERT_TRUE(desk.rename<RobotSetup>("R1", "big"));
+    EXPECT_TRUE(shown("left", "big"));
+    desk.undo_stack().undo();
+    desk.undo_stack().undo();
+    EXPECT_TRUE(shown("A", "R1"));
+    desk.undo_stack().redo();
+    desk.undo_stack().redo();
+    ended = 0;
+    worker.measure("renamed", false, false);
+    ASSERT_TRUE(over());
+    ASSERT_EQ(runs.size(), 1U) << failures.join("; ").toStdString();
+    EXPECT_EQ(measured(*runs[0]), desk.project().spots.size());
+    EXPECT_EQ(interrupted, 0);
+    EXPECT_EQ(desk.station().connection, connection) << "nothing was connected anew";
+    // One that is not in the project any more is let go of, and all with it.
+    for (const Spot& spot : Project(desk.project()).spots) ASSERT_TRUE(desk.remove<Spot>(spot.id));
+    ASSERT_TRUE(desk.remove<SensorSetup>("left"));
+    EXPECT_TRUE(wait_until([&] { return !desk.station().connected; }));
+}
+
+// Who changes names among two devices before the station has seen either is not answered by the wrong one.
+TEST(RenamedDevices, AreNeverMixedUp) {
+    TemporaryFolder folder;
+    Project two = side_of_a_door();
+    two.sensors.push_back(two.sensors[0]);
+    two.sensors[1].id = "B";
+    two.robots.push_back(two.robots[0]);
+    two.robots[1].id = "R2";
+    auto file = ProjectFile::create(folder / "two.seam", two);
+    ASSERT_TRUE(file) << file.error().sentence();
+    Station station(std::move(*file), two);
+    const auto connect = [&] {
+        std::map<std::string, std::unique_ptr<ProfileSource>> sensors;
+        std::map<std::string, std::unique_ptr<RobotLink>> robots;
+        for (const char* id : {"A", "B"})
+            sensors[id] = make_simulated_sensor(SimulatedCell::open({{"serial", id}}).value());
+        for (const char* id : {"R1", "R2"})
+            robots[id] = make_simulated_robot(SimulatedCell::open({{"serial", id}}).value());
+        station.use(two);
+        station.connect(std::move(sensors), std::move(robots));
+    };
+    two.sensors[0].settings["serial"] = "A";
+    two.sensors[1].settings["serial"] = "B";
+    two.robots[0].settings["serial"] = "R1";
+    two.robots[1].settings["serial"] = "R2";
+    connect();
+    Project next = two;
+    next.sensors[0].id = "left";
+    next.robots[1].id = "big";
+    const ProfileSource *a = station.sensor("A"), *b = station.sensor("B");
+    const RobotLink *r1 = station.robot("R1"), *r2 = station.robot("R2");
+    station.use(next);
+    EXPECT_TRUE(station.connected());
+    EXPECT_EQ(station.sensor("left"), a);
+    EXPECT_EQ(station.sensor("A"), nullptr);
+    EXPECT_EQ(station.sensor("B"), b);
+    EXPECT_EQ(station.robot("R1"), r1);
+    EXPECT_EQ(station.robot("big"), r2);
+    EXPECT_EQ(station.robot("R2"), nullptr);
+    // A name that passes to the other device at the same time.
+    connect();
+    next = two;
+    next.robots[0].id = "R3";
+    next.robots[1].id = "R1";
+    station.use(next);
+    EXPECT_FALSE(station.connected());
+    connect();
+    next = two;
+    std::swap(next.sensors[0].id, next.sensors[1].id);
+    station.use(next);
+    EXPECT_FALSE(station.connected());
+    // Another name and other settings: nobody knows whether it is the same.
+    connect();
+    next = two;
+    next.sensors[0].id = "left";
+    next.sensors[0].settings["serial"] = "C";
+    station.use(next);
+    EXPECT_FALSE(station.connected());
+}
+
 TEST_F(Cancelling, ARunStopsAtOnceAndIsKeptAsCancelled) {
     teach_all();
     bool cancelled = false;

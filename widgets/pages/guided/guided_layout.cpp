@@ -133,7 +133,12 @@ void GuidedPage::make_capture(QVBoxLayout& box) {
             calibration_.set_automatic(false);
             series_.start();
         });
-    inside->addLayout(make_row({capture_all_, capture_}));
+    connect_ = make_button("calibration_connect", "plug", tr("Connect"),
+                           tr("Open all sensors and robots of the project"), [this] {
+                               said_->hide();
+                               emit connect_wanted();
+                           });
+    inside->addLayout(make_row({connect_, capture_all_, capture_}));
     set_target_ =
         make_button("calibration_set_target", "target", tr("Set up the target"),
                     tr("Puts this method's target before the simulated sensor"), [this] { set_target(); });

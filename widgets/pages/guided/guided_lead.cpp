@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "projects/calibrate/session/guide.h"
+#include "projects/measure/measure.h"
 #include "widgets/pages/guided/guided_page.h"
 #include "widgets/pages/parts/form.h"
 #include "widgets/shown_text.h"
@@ -34,6 +35,8 @@ void GuidedPage::refresh_busy() {
     capture_all_->setEnabled(!busy && connected);
     capture_all_->setText(series_.extends() ? tr("%n more pose(s)", "", series_.more()) : tr("Capture all"));
     for (QPushButton* b : {automatic_, set_target_, go_there_}) b->setEnabled(connected && !running);
+    connect_->setVisible(!connected);
+    connect_->setEnabled(!busy && !desk_.worker().busy() && !desk_.project().sensors.empty());
     for (QPushButton* b : {load_, load_folder_}) b->setEnabled(!busy);
     solve_->setEnabled(!busy && s.solving_captures() >= s.method().fewest);
     const bool chosen = !selected().empty();
@@ -67,13 +70,39 @@ void GuidedPage::keep_focus(bool busy) {
     }
 }
 
+QString GuidedPage::missing() const {
+    const CalibrationSession& s = calibration_.session();
+    if (!find_sensor(desk_.project(), s.sensor_id()))
+        return tr("Sensor %1 is not in the project any more, by this name. Undo that in the project "
+                  "(Ctrl+Z), or go back "
+                  "to all methods.")
+            .arg(QString::fromStdString(s.sensor_id()));
+    if (s.method().robot && !find_robot(desk_.project(), s.robot_id()))
+        return s.robot_id().empty()
+                   ? tr("This method needs a robot, and the project has none: add one on the step Cell.")
+                   : tr("Robot %1 is not in the project any more, by this name. Undo that in the project "
+                        "(Ctrl+Z), or go "
+                        "back to all methods.")
+                         .arg(QString::fromStdString(s.robot_id()));
+    if (s.method().capture == CaptureKind::files || desk_.station().connected) return {};
+    return tr(
+        "The devices are not connected: connect them to capture, or load from files what was captured.");
+}
+
+bool GuidedPage::loaded() const {
+    const auto& captures = calibration_.session().state().captures;
+    return std::any_of(captures.begin(), captures.end(),
+                       [](const SessionCapture& c) { return c.taken->origin != "live"; });
+}
+
 void GuidedPage::mark_next() {
     const CalibrationSession& s = calibration_.session();
     const bool live = s.method().capture != CaptureKind::files && desk_.station().connected;
     // A simulated target is set up before anything can be captured; where the desk moves the robot, all captures are one
     // deed.
     const auto take = [&](QPushButton* capture) {
-        if (!live) return load_;
+        if (s.method().capture == CaptureKind::files || (!live && loaded())) return load_;
+        if (!live) return connect_;
         if (s.method().capture == CaptureKind::touch) return capture;
         if (simulated_sensor() && !target_set_) return set_target_;
         return capture_all_->isVisibleTo(this) ? capture_all_ : capture;

@@ -61,6 +61,8 @@ GuidedPage::GuidedPage(Desk& desk) : desk_(desk), calibration_(desk), series_(de
     connect(&desk_, &Desk::station_changed, this, [this] {
         if (!desk_.station().connected) target_set_ = false;  // a cell begins with its part
         if (isVisible() && calibration_.is_open()) {
+            refresh_stage();  // whether anything is connected
+            refresh_live();
             refresh_base();  // which sensors are there
             refresh_next();
             refresh_busy();

@@ -38,6 +38,7 @@ class GuidedPage : public QWidget {
     void proposed(std::optional<seamwright::Pose> base_from_flange);
     // What is being calibrated and how far it is, while the page is shown and something is left to do in it; else empty.
     void under_way(const QString& words);
+    void connect_wanted();  // of all devices of the project
 
   protected:
     void showEvent(QShowEvent* event) override;
@@ -54,6 +55,8 @@ class GuidedPage : public QWidget {
     void refresh();
     void refresh_who();
     void refresh_stage();
+    QString missing() const;  // why nothing can be captured; empty: it can
+    bool loaded() const;      // captures came from files
     void refresh_settings();
     void refresh_base();
     void refresh_table();
@@ -99,7 +102,7 @@ class GuidedPage : public QWidget {
     QVBoxLayout* settings_box_;
     TargetView* target_;
     QPushButton *undo_, *redo_, *needs_, *capture_, *automatic_, *load_, *load_folder_, *set_target_,
-        *go_there_, *capture_all_, *copy_next_;
+        *go_there_, *capture_all_, *copy_next_, *connect_;
     QPushButton *detect_, *take_convention_, *verification_, *remove_, *solve_, *cancel_, *verify_, *use_,
         *keep_, *anew_;
     QLabel *convention_, *next_, *next_words_, *count_, *verdict_, *reason_, *verified_, *stands_, *compared_,

@@ -119,6 +119,7 @@ void GuidedPage::refresh_stage() {
     if (const CalibrationSolution* solution = s.solution(); solution && !serves(solution->verdict()))
         line += "<br>" + tr("%1: %2").arg("<b>" + verdict_word(solution->verdict()).toHtmlEscaped() + "</b>",
                                           shown(solution->report.judgement.reason).toHtmlEscaped());
+    if (const QString why = missing(); !why.isEmpty()) line += "<br>" + why.toHtmlEscaped();
     stage_->setText(line);
     stage_->setAccessibleDescription(names[at]);
     stage_->setProperty("stage", at);
@@ -303,6 +304,7 @@ void GuidedPage::refresh_next() {
     next_words_->show();
     const auto at = flange();
     if (!at) {
+        next_words_->setVisible(desk_.station().connected);
         next_words_->setText(tr("The robot does not tell its pose."));
         return;
     }
@@ -476,6 +478,8 @@ void GuidedPage::refresh_use() {
 
 void GuidedPage::refresh_live() {
     if (!isVisible() || !calibration_.is_open()) return;
+    // What was seen before is no live picture.
+    if (!desk_.station().connected) return target_->set_live({}, {}, false, tr("not connected"));
     const LiveTarget& live = calibration_.live();
     const bool image = live.frame && !live.frame->image.empty() &&
                        calibration_.session().method().capture != CaptureKind::sphere_profile;

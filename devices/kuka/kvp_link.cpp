@@ -433,15 +433,14 @@ class KvpLink final : public RobotLink {
         return try_write({{"SW_TAKEN", "FALSE"}, {"SW_VERDICT", "0"}});
     }
 
-    // In order; all are sent, the first refusal is told.
+    // In order, up to the first that is refused: what follows may set off what it prepares.
     Expected<void> write(const std::vector<std::pair<std::string, std::string>>& values) {
-        std::vector<KvpRequest> requests;
-        for (const auto& [name, value] : values) requests.push_back({0, true, name, value});
-        SEAM_TRY(auto answers, ask(std::move(requests)));
-        for (std::size_t i = 0; i < values.size(); ++i)
-            if (!answers[i].done)
-                return device_error(Text("the controller refuses to write {}", values[i].first), where_,
+        for (const auto& [name, value] : values) {
+            SEAM_TRY(auto answers, ask({{0, true, name, value}}));
+            if (!answers[0].done)
+                return device_error(Text("the controller refuses to write {}", name), where_,
                                     "check the operating mode and that the variable is global");
+        }
         return {};
     }
 

@@ -1,10 +1,11 @@
 #pragma once
-// Universal Robots (CB3 from PolyScope 3.4, e-Series, PolyScope X's PolyScope 5 interface) by RTDE.
+// Universal Robots (CB3 from PolyScope 3.4, e-Series) by RTDE.
 //
 // The controller is the server: poses, modes and registers stream from port 30004, and frames are handed to
 // the URScript module through registers (module.h; `robot-program --brand ur` writes the module and the
 // measuring program). Protocol version 2, or 1 where the controller knows no other. Who the controller is,
-// and whether it stands under remote control, tells its dashboard server (port 29999).
+// and whether it stands under remote control, tells its dashboard server (port 29999); model and serial number from
+// PolyScope 3.12 and 5.6 on, before that they are empty: not known. PolyScope X without a dashboard server is not served.
 //
 // A frame is a pose of the module, known by its name; the application's path runs in
 // pose_trans(sw_activate(sw_name), p). The flange is actual_TCP_pose without tcp_offset; controllers that do not

@@ -6,11 +6,13 @@
 
 #include <atomic>
 #include <map>
+#include <mutex>
 #include <string>
 #include <thread>
 
 #include "devices/kuka/kvp.h"
 #include "devices/net/socket.h"
+#include "devices/robot_program.h"
 
 namespace seamwright {
 namespace {
@@ -33,6 +35,10 @@ class PublishedServer {
     }
     std::uint16_t port = 0;
     std::atomic<int> asked = 0;
+    std::string value(const std::string& name) {
+        const std::lock_guard lock(mutex_);
+        return variables_[name];
+    }
 
   private:
     static std::string word(std::size_t n) {
@@ -50,6 +56,7 @@ class PublishedServer {
             if (!got) continue;
             // What came is one message, whatever stands behind it.
             const std::string message = buffer.substr(0, *got);
+            const std::lock_guard lock(mutex_);
             const std::size_t length = number(message, 5);
             const std::string name = message.substr(7, length);
             std::string value;
@@ -71,6 +78,7 @@ class PublishedServer {
         }
     }
 
+    std::mutex mutex_;
     std::map<std::string, std::string> variables_;
     const std::chrono::milliseconds delay_;
     TcpListener listener_;
@@ -117,6 +125,25 @@ TEST(KvpServer, AnEmptyValueIsAnUnknownVariable) {
     const auto unknown = link->read_frame("BASE_DATA[6]");
     ASSERT_FALSE(unknown);
     EXPECT_THAT(unknown.error().sentence(), testing::HasSubstr("refuses to read BASE_DATA[6]"));
+}
+
+// The start signal follows the count of the triggers: a controller that does not take the one is not given the other.
+TEST(KvpServer, NothingIsSetOffBehindARefusedWrite) {
+    const std::map<std::string, std::string> waiting = {
+        {"$STOPMESS", "FALSE"},
+        {"SW_RELEASED", "FALSE"},
+        {"SW_WAITS", "TRUE"},
+        {"SW_BUSY", "FALSE"},
+        {"SW_TAKEN", "FALSE"},
+        {"SW_TAKING", "FALSE"},
+        {"SW_VERDICT", "0"},
+        {"SW_GO", "FALSE"},
+        {"SW_SIGNATURE[]", '"' + program_signature({}) + '"'}};
+    PublishedServer server(waiting);  // without SW_FIRED
+    const auto started = link_to(server)->start_measuring({});
+    ASSERT_FALSE(started);
+    EXPECT_THAT(started.error().sentence(), testing::HasSubstr("refuses to write SW_FIRED"));
+    EXPECT_EQ(server.value("SW_GO"), "FALSE");
 }
 
 }  // namespace

@@ -85,6 +85,39 @@ TEST(UrRtde, OldControllersSpeakVersionOneAndTellNoOffset) {
     EXPECT_TRUE(frame) << frame.error().sentence();
 }
 
+// Dashboard server of Universal Robots ("Dashboard Server, port 29999"): a greeting, then a line for a line; "get robot model"
+// and "get serial number" are known from PolyScope 3.12 and 5.6 on.
+TEST(UrRtde, AControllerThatDoesNotKnowItsSerialNumberHasNone) {
+    auto listener = TcpListener::listen("127.0.0.1", 0);
+    ASSERT_TRUE(listener);
+    for (const bool knows : {false, true}) {
+        std::jthread dashboard([&](const std::stop_token& stop) {
+            auto client = listener->accept(Timeout(5000));
+            if (!client) return;
+            (void)client->send(bytes_of("Connected: Universal Robots Dashboard Server\n"), Timeout(500));
+            std::string heard(200, '\0');
+            while (!stop.stop_requested()) {
+                const auto got = client->receive_some(std::as_writable_bytes(std::span(heard)), Timeout(10));
+                if (!got && !is_silence(got.error())) return;
+                if (!got) continue;
+                const std::string question = heard.substr(0, *got - 1);
+                const std::string answer = !knows ? "could not understand: '" + question + "'"
+                                           : question == "get robot model" ? "UR5"
+                                                                           : "20173500042";
+                (void)client->send(bytes_of(answer + "\n"), Timeout(500));
+            }
+        });
+        DeviceSession session;
+        auto link = open_ur_rtde({{"dashboard_port", listener->port()}, {"timeout_ms", 2000}}, session);
+        ASSERT_TRUE(link) << link.error().sentence();
+        const auto robot = (*link)->identity();
+        ASSERT_TRUE(robot) << robot.error().sentence();
+        EXPECT_EQ(robot->brand, "Universal Robots");
+        EXPECT_EQ(robot->model, knows ? "UR5" : "");
+        EXPECT_EQ(robot->serial, knows ? "20173500042" : "");
+    }
+}
+
 TEST(UrRtde, TheToolIsTakenOffThePose) {
     auto robot = controller({{"tool", {{"xyz", {10, -20, 150}}, {"abc", {5, 12, -20}}}},
                              {"scripts", scripts_without_measuring()}});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "devices/registry.h"
 #include "projects/model/part_types.h"
 #include "projects/station/acquire.h"
 #include "projects/station/check.h"
@@ -51,6 +52,25 @@ Expected<ProgramRequest> program_request(const Project& whole, const RobotId& ro
                                   region_number(project, region.id, robot->id)});
     }
     return request;
+}
+
+std::vector<std::string> types_with_these_files(const Project& project, const RobotId& robot_id,
+                                                const std::string& brand, const ProgramRequest& request,
+                                                const std::vector<ProgramFile>& files) {
+    std::vector<std::string> types;
+    for (const PartType& type : project.part_types) {
+        if (type.id == request.part_type) continue;
+        const auto other = program_request(project, robot_id, PartTypeId(type.id));
+        const auto its = other ? write_robot_program(brand, *other)
+                               : Expected<std::vector<ProgramFile>>(tl::unexpected(other.error()));
+        if (!its) continue;  // it has none
+        const bool clashes = std::ranges::any_of(files, [&](const ProgramFile& file) {
+            return std::ranges::any_of(
+                *its, [&](const ProgramFile& f) { return f.name == file.name && f.text != file.text; });
+        });
+        if (clashes) types.push_back(type.id);
+    }
+    return types;
 }
 
 }  // namespace seamwright

@@ -7272,6 +7272,10 @@ und %1 weitere</translation>
         <source>%1 files written to %2</source>
         <translation>%1 Dateien nach %2 geschrieben</translation>
     </message>
+    <message>
+        <source>The files of part type %1 have the same names: a controller holds the program of one type, the one that was loaded last, and parts of the others are refused at their start. Write each type into a folder of its own, and load the one that comes.</source>
+        <translation>Die Dateien des Teiletyps %1 heißen ebenso: Eine Steuerung hält das Programm eines Typs, das zuletzt geladene, und Teile der anderen werden beim Start abgewiesen. Jeden Typ in einen eigenen Ordner schreiben und den laden, der kommt.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::GapDialog</name>

@@ -99,7 +99,15 @@ TEST_F(TypeCommand, FromOneKindOfPartToTwoAndBack) {
     for (const json& d : differences) EXPECT_EQ(d["field"], "reference_state");
 
     EXPECT_EQ(run({"robot-program", f, "--brand", "kuka", "--out", (folder / "krc").string()}).exit_code, 2);
+    // One controller holds one of them: who writes the second is told.
+    for (const auto& [type, other] : {std::pair("right", "left"), std::pair("left", "right")})
+        EXPECT_EQ(
+            said({"robot-program", f, "--brand", "kuka", "--type", type, "--out", (folder / type).string()})
+                .value("same_files_as", json()),
+            json::array({other}));
     said({"type", "remove", f, "right", "--with-spots"});
+    EXPECT_FALSE(said({"robot-program", f, "--brand", "kuka", "--out", (folder / "krc").string()})
+                     .contains("same_files_as"));
     said({"type", "remove", f, "left"});
     EXPECT_EQ(said({"run", f, "--push"})["status"], "ok");
     EXPECT_EQ(run({"check", f}).exit_code, 0);

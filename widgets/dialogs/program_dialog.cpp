@@ -106,17 +106,36 @@ void ProgramDialog::show_request() {
     if (!files) return set_verdict(*verdict_, shown_error(files.error()), Tone::attention);
     QStringList names;
     for (const ProgramFile& f : *files) names << QString::fromStdString(f.name);
-    set_verdict(*verdict_,
-                tr("%1 spots, %2 frames: %3")
-                    .arg(request->moves.size())
-                    .arg(request->frames.size())
-                    .arg(names.join(", ")),
-                Tone::good);
+    const QString holds = tr("%1 spots, %2 frames: %3")
+                              .arg(request->moves.size())
+                              .arg(request->frames.size())
+                              .arg(names.join(", "));
+    const QString clash = said_of_same_files(*request, *files);
+    set_verdict(*verdict_, clash.isEmpty() ? holds : holds + QChar(0x2e) + QChar(0x20) + clash,
+                clash.isEmpty() ? Tone::good : Tone::attention);
+}
+
+// Of the part types whose files have the same names; empty: none.
+QString ProgramDialog::said_of_same_files(const ProgramRequest& request,
+                                          const std::vector<ProgramFile>& files) const {
+    QStringList types;
+    for (const std::string& type :
+         types_with_these_files(desk_.project(), RobotId(robot_->currentText().toStdString()),
+                                brand_->currentText().toStdString(), request, files))
+        types << QString::fromStdString(type);
+    if (types.isEmpty()) return {};
+    return tr("The files of part type %1 have the same names: a controller holds the program of one type, "
+              "the one that "
+              "was loaded last, and parts of the others are refused at their start. Write each type into a "
+              "folder of "
+              "its own, and load the one that comes.")
+        .arg(types.join(QStringLiteral(", ")));
 }
 
 Expected<std::vector<std::filesystem::path>> ProgramDialog::write_into(const QString& folder) {
     SEAM_TRY(const auto request, request_of(desk_.project(), *robot_, *type_));
     SEAM_TRY(const auto files, write_robot_program(brand_->currentText().toStdString(), request));
+    same_files_ = said_of_same_files(request, files);
     return write_program_files(folder.toStdString(), files);
 }
 
@@ -128,7 +147,9 @@ void ProgramDialog::choose_folder() {
     if (!written)
         return set_verdict(*verdict_, shown_error(tr("The program was not written."), written.error()),
                            Tone::alarm);
-    set_verdict(*verdict_, tr("%1 files written to %2").arg(written->size()).arg(folder), Tone::good);
+    const QString done = tr("%1 files written to %2").arg(written->size()).arg(folder);
+    set_verdict(*verdict_, same_files_.isEmpty() ? done : done + QChar(0x2e) + QChar(0x20) + same_files_,
+                same_files_.isEmpty() ? Tone::good : Tone::attention);
 }
 
 }  // namespace seamwright

@@ -26,12 +26,14 @@ class ProgramDialog : public QDialog {
     void choose_brand();
     void show_request();
     void choose_folder();
+    QString said_of_same_files(const ProgramRequest& request, const std::vector<ProgramFile>& files) const;
 
     Desk& desk_;
     QComboBox *robot_, *type_, *brand_;
     QTableWidget* moves_;
     QLabel* verdict_;
     QPushButton* write_;
+    QString same_files_;  // of what was written
     bool filling_ = false;
 };
 

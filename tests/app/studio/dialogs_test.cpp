@@ -11,6 +11,8 @@
 #include "devices/drawing/door_step.h"
 #include "devices/exchange/tables/path_csv.h"
 #include "devices/simulated/scene/door.h"
+#include "projects/file/project_file.h"
+#include "projects/reuse/part_type_edits.h"
 #include "projects/reuse/simulated_truth.h"
 #include "tests/app/studio/person.h"
 #include "widgets/dialogs/gap_dialog.h"
@@ -164,6 +166,32 @@ TEST_F(Dialogs, TheControllersProgramIsWrittenForTheProjectOnTheScreen) {
     EXPECT_FALSE(write->isEnabled()) << "no spot, no program";
     EXPECT_FALSE(word(*dialog, "program_verdict").isEmpty());
     dialog->grab().save(QString(SEAMWRIGHT_SCREENS) + "/dialog_program.png");
+}
+
+// The second type's files would take the place of the first one's on the controller: both say so.
+TEST_F(Dialogs, TwoPartTypesWhoseProgramsHaveTheSameFilesAreNamed) {
+    Desk& desk = studio->desk();
+    auto project = add_part_type(desk.project(), {"left", "", 1});
+    ASSERT_TRUE(project) << project.error().sentence();
+    const auto file = folder / "types.seam";
+    const auto made = clone_part_type(*project, "left", {"right", "", 2});
+    ASSERT_TRUE(made) << made.error().sentence();
+    ASSERT_TRUE(ProjectFile::create(file, *made));
+    ASSERT_TRUE(studio->open(QString::fromStdString(file.string())));
+    auto* dialog = opened<ProgramDialog>("robot_program", "program_dialog");
+    ASSERT_TRUE(dialog);
+    auto* type = dialog->findChild<QComboBox*>("program_type");
+    ASSERT_EQ(type->count(), 2);
+    for (const auto& [one, other] : {std::pair("left", "right"), std::pair("right", "left")})
+        for (const char* brand : {"kuka", "abb", "ur"}) {
+            type->setCurrentText(one);
+            dialog->findChild<QComboBox*>("program_brand")->setCurrentText(brand);
+            const QString said = word(*dialog, "program_verdict");
+            EXPECT_TRUE(said.contains(QString("part type %1 have the same names").arg(other)))
+                << brand << ": " << said.toStdString();
+            EXPECT_TRUE(dialog->findChild<QPushButton*>("program_write")->isEnabled());
+        }
+    dialog->grab().save(QString(SEAMWRIGHT_SCREENS) + "/dialog_program_types.png");
 }
 
 // From the STEP file to spots in the project, with the mouse on the edge in the picture.
@@ -326,9 +354,10 @@ TEST_F(Dialogs, SpotsAreProposedAlongAnEdgeOfTheDrawingAndTaken) {
         QApplication::processEvents();
         me.click("head_deed");
         ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
-        EXPECT_TRUE(
-            me.wait([&] { return desk.project().spots[i].reference_state == ReferenceState::measured; }))
-            << desk.project().spots[i].id << ": " << me.text_of("head_state").toStdString();
+        EXPECT_TRUE(me.wait([&] {
+            return desk.project().spots[i].reference_state == ReferenceState::measured;
+        })) << desk.project().spots[i].id
+            << ": " << me.text_of("head_state").toStdString();
     }
 }
 

@@ -31,6 +31,15 @@ Expected<Answer> write_program(const ProgramArguments& a) {
     answer.json["frames"] = request.frames.size();
     if (!request.part_type.empty()) answer.json["type"] = request.part_type;
     answer.text += fmt::format("{} spots, {} frames\n", request.moves.size(), request.frames.size());
+    const auto types = types_with_these_files(project, RobotId(a.robot), a.brand, request, files);
+    if (!types.empty()) {
+        answer.json["same_files_as"] = types;
+        answer.text += fmt::format(
+            "the files of part type {} have the same names: a controller holds the program of one type, the "
+            "one that "
+            "was loaded last\n",
+            fmt::join(types, ", "));
+    }
     return answer;
 }
 

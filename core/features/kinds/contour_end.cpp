@@ -1,7 +1,8 @@
 // Contour end ("tear-off"; methods.md 2): where the surface stops, seen from the left or the right.
 //
 // The point. Through the last points before the end, up to fit_length_mm, goes a line, or an arc of a circle where the
-// contour is rounded there (end_curve.h).
+// contour is rounded there (end_curve.h); through those of 0.65 or 0.42 of that length where more is neither (a hem and the flat
+// before it) and they say better where the last point is.
 // The last return is not the end: the surface ends somewhere between it and the next, missing one. The point
 // lies half a pitch p beyond the last point on that curve. p is the median step; on an arc the sensor's
 // steps grow as the surface turns away, so there p is the arc in which the curve advances by the median step
@@ -15,7 +16,7 @@
 // contour, its sigma from the fit's residuals, and not below what the profile's noise beside them makes likely; of
 // interpolated points 1.5 f times the variance, or what the residuals' likeness says (contour_noise.h).
 //     across   v + (k h^2 / 2)^2 + e^2 + d^2 + u n_z^2,   v that of the curve there, h = r - q / 2, k its curvature
-//     along    (r^2 - 2 f p^2) / 12 + (r - q)^2 / 4 + noise^2
+//     along    (r^2 - 2 f p^2) / 12 + (r - q)^2 / 4 + noise^2 + s (l^2 + g^2 / 6)
 // k h^2 / 2: beyond the last point the contour may bend on or go on straight. e, other shape than an
 // arc: the larger of the residuals' cubic part at the point, without what noise makes of it, and the
 // distance of the last point when the mean of the last three is more than 2.5 sigma / sqrt(3) off. d: a sensor that gives
@@ -32,6 +33,10 @@
 // not say that the surface has ended; behind a line without return or with another sheet's only where they stand within
 // three p of the contour's continuation. noise: that in z moves the last point along a sloping contour as well, that in x
 // (second differences of x; none on an even grid) along every one.
+//
+// s, 0 at 65 degrees and 1 at 73: an arc that turns away until the light grazes it. l = 2.5 degrees of it: the angle at which
+// there is too little light for a return scatters with the surface. g: an even grid may have been interpolated from points up to
+// 0.9 of its own steps apart without showing it; so much farther the arc may have gone on beyond a step.
 //
 // What is systematic stays: where light grazes a rounded rim, returns stop before the silhouette, at the
 // teaching as at the measuring. On a fold of 1.15 mm radius that is 0.15 mm; it repeats within the
@@ -73,7 +78,7 @@ constexpr double kEndDependent = 1.5;
 constexpr double kEndAlone = 0.25;                // points on either side: less is no mean
 constexpr double kEndMisfit = 2.5;                // sigma of the last points' mean
 constexpr double kEndShares[] = {1, 0.65, 0.42};  // of fit_length_mm, where more is no arc
-constexpr std::size_t kEndFewestShort = 6;        // points of such a part
+constexpr double kEndFewestShort = 6;             // points of such a part that do not share their noise
 // Of a contour against the line of the sensor: from where on the light grazes it, where it does for certain; how much the
 // angle scatters (sigma) at which the returns stop.
 constexpr double kEndGrazed_rad = 1.13, kEndGrazing_rad = 1.27, kEndLight_rad = 0.044;
@@ -178,11 +183,12 @@ class ContourEnd final : public FeatureFinder {
     // the flat before it) and these say better where the last point is. An arc is not given up for a line.
     EndFit::Result fit_end(int first, int last, bool at_last) const {
         EndFit::Result best;
+        const double fewest = kEndFewestShort * sheets_.noise().apart();
         double best_length = fit_length_, least = 0, tried = fit_length_;
         for (const double share : kEndShares) {
             const double length = share * fit_length_;
             take_end(first, last, at_last, length);
-            if (share < 1 && fit_x_.size() < kEndFewestShort) break;
+            if (share < 1 && double(fit_x_.size()) < fewest) break;
             tried = length;
             const EndFit::Result fit = fit_.fit(fit_x_, fit_z_, sheets_.noise());
             if (!fit.ok) break;
@@ -198,7 +204,7 @@ class ContourEnd final : public FeatureFinder {
             }
             if (!(misfit * misfit > fit.curve.variance_at(s))) break;
         }
-        if (best_length != tried || fit_x_.size() < kEndFewestShort)
+        if (best_length != tried || double(fit_x_.size()) < fewest)
             take_end(first, last, at_last, best_length);
         return best;
     }

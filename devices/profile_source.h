@@ -48,6 +48,10 @@ class ProfileSource {
     virtual std::vector<ParameterInfo> parameters() const = 0;
     virtual Expected<double> get(const std::string& parameter) const = 0;
     virtual Expected<void> set(const std::string& parameter, double value) = 0;
+    // Whether the device is there, of one that is connected and not started: a station that waits for a part asks now and then.
+    // Error (kind device): it has gone; start() tries again. Takes no longer than one answer of it. Drivers without a device
+    // of their own leave it.
+    virtual Expected<void> answers() { return {}; }
 };
 inline constexpr const char* kEndOfRecording = "the recording has ended";
 

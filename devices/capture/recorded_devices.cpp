@@ -57,6 +57,7 @@ class RecordedSensor final : public ProfileSource {
     }
     FramePtr latest() const override { return sensor_->latest(); }
     SourceCounters counters() const override { return sensor_->counters(); }
+    Expected<void> answers() override { return sensor_->answers(); }
     std::vector<ParameterInfo> parameters() const override { return sensor_->parameters(); }
     Expected<double> get(const std::string& parameter) const override { return sensor_->get(parameter); }
     Expected<void> set(const std::string& parameter, double value) override {

@@ -194,6 +194,12 @@ SourceCounters GenicamSource::counters() const {
     return c;
 }
 
+Expected<void> GenicamSource::answers() {
+    const std::lock_guard lock(control_);
+    if (!camera_ || is_lost()) return tl::unexpected(gone());
+    return {};
+}
+
 std::vector<ParameterInfo> GenicamSource::parameters() const {
     const std::lock_guard lock(control_);
     return camera_ && !is_lost() ? read_parameters(camera_.get()).list : std::vector<ParameterInfo>{};

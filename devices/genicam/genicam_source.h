@@ -53,6 +53,7 @@ class GenicamSource final : public ProfileSource {
         return latest_;
     }
     SourceCounters counters() const override;
+    Expected<void> answers() override;  // as its heartbeats tell: nothing is waited for
     std::vector<ParameterInfo> parameters() const override;
     Expected<double> get(const std::string& parameter) const override;
     Expected<void> set(const std::string& parameter, double value) override;

@@ -186,10 +186,9 @@ class GocatorSource final : public ProfileSource {
         }
         if (Clock::now() >= next_ping_) {
             next_ping_ = Clock::now() + kPingPeriod;
-            if (!ask(gdp::Command::ping, std::string(8, '\0'))) {
+            if (auto pong = ping(); !pong) {
                 lost();
-                return device_error(ErrorCode::disconnected, Text("{}: it does not answer", kDisconnected),
-                                    where(), kLookAtSensor);
+                return tl::unexpected(pong.error());
             }
         }
         return device_error(
@@ -206,11 +205,21 @@ class GocatorSource final : public ProfileSource {
         const std::lock_guard lock(mutex_);
         return counters_;
     }
+    Expected<void> answers() override {
+        auto pong = ping();
+        if (!pong) lost();
+        return pong;
+    }
     std::vector<ParameterInfo> parameters() const override { return {}; }
     Expected<double> get(const std::string& parameter) const override { return no_parameter(parameter); }
     Expected<void> set(const std::string& parameter, double) override { return no_parameter(parameter); }
 
   private:
+    Expected<void> ping() {
+        if (ask(gdp::Command::ping, std::string(8, '\0'))) return {};
+        return device_error(ErrorCode::disconnected, Text("{}: it does not answer", kDisconnected), where(),
+                            kLookAtSensor);
+    }
     void end() {
         const std::lock_guard stream(stream_mutex_);  // wait_next() comes to its end first
         // Nothing waits for the job's end but the next start, which asks for it again.

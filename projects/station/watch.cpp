@@ -80,6 +80,7 @@ class Watch {
                 if (!connected) continue;
             }
             if (dead_ && std::chrono::steady_clock::now() >= look_again_) dead_ = dead_sensor();
+            ask_sensors();
             SEAM_TRY(auto start, next_start());
             if (!start.has_value()) {
                 let_call_again();
@@ -160,6 +161,22 @@ class Watch {
             return std::pair(Text("sensor {}", setup.id), started.error());
         }
         return std::nullopt;
+    }
+
+    // One that has gone while nothing is measured: neither a wait for a start nor a robot finds that out.
+    void ask_sensors() {
+        if (dead_ || std::chrono::steady_clock::now() < ask_again_) return;
+        ask_again_ = std::chrono::steady_clock::now() + options_.ask_sensors;
+        for (const SensorSetup& setup : station_.project().sensors) {
+            ProfileSource* sensor = station_.sensor(setup.id);
+            if (!sensor) continue;
+            const auto answered = sensor->answers();
+            if (answered) continue;
+            dead_ = std::pair(Text("sensor {}", setup.id), answered.error());
+            look_again_ = std::chrono::steady_clock::now() + retry_;
+            state_ = WatchState::lost;
+            return tell_lost(dead_->first, dead_->second);
+        }
     }
 
     // All answer. A call is heard while a sensor is dead, too: the robot is told at once that its part failed.
@@ -461,9 +478,13 @@ class Watch {
     bool calls_heard_ = false;                                   // line_over() of this part
     std::optional<std::pair<std::string, StartSignal>> called_;  // by which robot, while a part was released
     std::chrono::milliseconds retry_;
-    bool away_ = false;                           // the station or a robot, and that was told
-    std::optional<std::pair<Text, Error>> dead_;  // a sensor, since a run that it ended; told
+    bool away_ = false;  // the station or a robot, and that was told
+    std::optional<std::pair<Text, Error>>
+        dead_;  // a sensor, since a run that it ended or it did not answer; told
     std::chrono::steady_clock::time_point look_again_{};
+    // The next time that the sensors are asked whether they are there.
+    std::chrono::steady_clock::time_point ask_again_ =
+        std::chrono::steady_clock::now() + options_.ask_sensors;
     // Which robot waits in front of a part that failed before it went, and when it may be refused.
     std::optional<std::pair<std::string, std::chrono::steady_clock::time_point>> stranded_;
     std::chrono::milliseconds call_again_;

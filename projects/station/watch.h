@@ -113,6 +113,8 @@ struct WatchOptions {
     // stand there by now. Of several that wait the newest alone counts.
     std::chrono::milliseconds start_expiry{10000};
     std::chrono::milliseconds retry_first{100}, retry_longest{500};  // doubles between attempts
+    // How often the sensors are asked, while no part comes, whether they are there (ProfileSource::answers).
+    std::chrono::milliseconds ask_sensors{1000};
     // A robot whose part failed before its program went waits there for good. When all sensors answer and so long after
     // the failure (doubling from part to part) it is refused, upon which it calls once more.
     std::chrono::milliseconds call_again_first{1000}, call_again_longest{60'000};

@@ -41,8 +41,14 @@ SensorIdentity FakeSensor::identity() const {
     return cell_.sensor_identity;
 }
 
+Expected<void> FakeSensor::answers() {
+    if (cell_.gone_sensor) return device_error(ErrorCode::disconnected, kDisconnected, "sensor A");
+    return {};
+}
+
 Expected<void> FakeSensor::start() {
-    if (cell_.dead_sensor) return device_error(ErrorCode::disconnected, kDisconnected, "sensor A");
+    if (cell_.dead_sensor || cell_.gone_sensor)
+        return device_error(ErrorCode::disconnected, kDisconnected, "sensor A");
     started = true;
     return {};
 }

@@ -38,6 +38,7 @@ struct FakeCell {
     std::vector<Text> notices;  // the robot link tells them once
     std::string silent_sensor_at, silent_robot_at, damaged_at, empty_at, wrong_spot_at;
     bool dead_sensor = false;  // cannot be started
+    bool gone_sensor = false;  // the same, and says so when it is asked
     SensorIdentity sensor_identity{"fake", "Seamwright", "S1", "0001"};
     RobotIdentity robot_identity{"fake", "KUKA", "KR", "0002"};
     RobotMode mode = RobotMode::external;
@@ -70,6 +71,7 @@ class FakeSensor : public ProfileSource {
     Expected<FramePtr> wait_next(std::chrono::milliseconds) override;
     FramePtr latest() const override;
     SourceCounters counters() const override;
+    Expected<void> answers() override;
     std::vector<ParameterInfo> parameters() const override { return {}; }
     Expected<double> get(const std::string&) const override;
     Expected<void> set(const std::string&, double) override;

@@ -493,6 +493,30 @@ TEST_F(Wire, UnpluggedAndPluggedInAgain) {
     EXPECT_EQ((*sensor)->identity().serial, "WIRE-1");
 }
 
+TEST_F(Wire, SaysWhetherItIsThereWhileNothingIsMeasured) {
+    const auto taken = UdpSocket::bind("127.0.0.1", kGvcpPort);
+    auto camera = serve(cell_);
+    ASSERT_TRUE(camera) << camera.error().sentence();
+    auto sensor = open({{"heartbeat_ms", 50}, {"reconnect_ms", 20}, {"reconnect_most_ms", 100}});
+    ASSERT_TRUE(sensor) << sensor.error().sentence();
+    EXPECT_TRUE((*sensor)->answers());
+    ASSERT_TRUE((*sensor)->start());
+    (*sensor)->stop();
+    EXPECT_TRUE((*sensor)->answers());
+    camera->reset();
+    Expected<void> there;
+    for (int i = 0; i < 500 && (there = (*sensor)->answers()); ++i) std::this_thread::sleep_for(20ms);
+    ASSERT_FALSE(there);
+    EXPECT_TRUE(is_disconnect(there.error())) << there.error().sentence();
+    camera = serve(cell_, {{"address", camera_address}});
+    ASSERT_TRUE(camera) << camera.error().sentence();
+    Expected<void> started;
+    for (int i = 0; i < 200 && !(started = (*sensor)->start()); ++i) std::this_thread::sleep_for(20ms);
+    ASSERT_TRUE(started) << started.error().sentence();
+    (*sensor)->stop();
+    EXPECT_TRUE((*sensor)->answers());
+}
+
 TEST_F(Wire, ASecondCameraOrControllerIsRefusedInWords) {
     auto camera = serve(cell_);
     ASSERT_TRUE(camera) << camera.error().sentence();

@@ -189,6 +189,24 @@ TEST_F(Gocator, ComesBackAfterItsConnectionsWereCut) {
     EXPECT_EQ((*frame)->sequence, 1u);
 }
 
+TEST_F(Gocator, SaysWhetherItIsThereWhileNothingIsMeasured) {
+    auto sensor = try_open({{"timeout_ms", 100}});
+    ASSERT_TRUE(sensor) << sensor.error().sentence();
+    EXPECT_TRUE((*sensor)->answers());
+    EXPECT_TRUE((*sensor)->start());
+    (*sensor)->stop();
+    EXPECT_TRUE((*sensor)->answers());
+    served->cut();
+    Expected<void> gone;
+    for (int i = 0; i < 200 && (gone = (*sensor)->answers()); ++i) std::this_thread::sleep_for(10ms);
+    ASSERT_FALSE(gone);
+    EXPECT_TRUE(is_disconnect(gone.error())) << gone.error().sentence();
+    EXPECT_FALSE((*sensor)->answers()) << "until it is started again";
+    EXPECT_TRUE((*sensor)->start());
+    (*sensor)->stop();
+    EXPECT_TRUE((*sensor)->answers());
+}
+
 TEST_F(Gocator, SilentSensorIsFoundOutByAPing) {
     auto sensor = open({{"timeout_ms", 100}});
     EXPECT_TRUE(is_silence(sensor->wait_next(1100ms).error())) << "it answers the ping";

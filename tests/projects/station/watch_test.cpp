@@ -192,6 +192,65 @@ TEST_F(Watching, IsNotReadyWhileASensorIsDead) {
     EXPECT_THAT(texts, HasSubstr("sensor A is lost: sensor A: the connection was closed by the other side"));
 }
 
+// Nor one whose camera was unplugged while no part came: nobody calls, and it is not ready until the camera is back.
+TEST_F(Watching, IsNotReadyWhileASensorIsGoneAndNoPartComes) {
+    options.ask_sensors = std::chrono::milliseconds(1);
+    std::vector<std::string> states;
+    options.tell = [&](const WatchEvent& e) {
+        if (std::holds_alternative<watched::SpotDone>(e.happening)) return;
+        states.push_back(fmt::format("{} {}", name_of(e.happening), to_string(e.state)));
+        texts += e.text.english() + "\n";
+        if (const auto* lost = std::get_if<watched::Lost>(&e.happening)) {
+            EXPECT_EQ(lost->device, "sensor A");
+            EXPECT_EQ(lost->code, ErrorCode::disconnected);
+        }
+        if (std::holds_alternative<watched::Back>(e.happening)) part("CAR-1");
+    };
+    std::stop_source stop;
+    options.cancel = stop.get_token();
+    int waits = 0;
+    options.alive = [&] {
+        if (++waits == 20) cell->gone_sensor = true;
+        if (waits == 60) cell->gone_sensor = false;
+        if (waits == 5000) stop.request_stop();  // nobody has noticed
+    };
+    options.parts = 1;
+    const auto counts = watch(*station, options);
+    ASSERT_TRUE(counts);
+    EXPECT_EQ(counts->lost, 1) << "one outage";
+    EXPECT_EQ(counts->corrected, 1);
+    EXPECT_THAT(states, ElementsAre("lost lost", "back waiting", "start measuring", "run waiting",
+                                    "stopped stopped"));
+    EXPECT_THAT(texts, HasSubstr("sensor A is lost: sensor A: the connection was closed by the other side"));
+    const auto events = station->file().events();
+    ASSERT_TRUE(events);
+    EXPECT_TRUE(std::any_of(events->begin(), events->end(),
+                            [](const EventRecord& e) { return e.kind == EventKind::alarm; }));
+}
+
+// Who calls meanwhile is told at once.
+TEST_F(Watching, ACallWhileASensorIsGoneIsAnswered) {
+    options.ask_sensors = std::chrono::milliseconds(1);
+    cell->gone_sensor = true;
+    std::stop_source stop;
+    options.cancel = stop.get_token();
+    int waits = 0;
+    options.alive = [&] {
+        if (++waits == 5000) stop.request_stop();  // nobody has noticed
+    };
+    options.tell = [&](const WatchEvent& e) {
+        if (std::holds_alternative<watched::Lost>(e.happening)) part("CAR-1");
+        if (std::holds_alternative<watched::RunDone>(e.happening)) cell->gone_sensor = false;
+        if (std::holds_alternative<watched::Back>(e.happening)) part("CAR-2");
+    };
+    options.parts = 2;
+    const auto counts = watch(*station, options);
+    ASSERT_TRUE(counts);
+    EXPECT_EQ(counts->failed, 1);
+    EXPECT_EQ(counts->corrected, 1);
+    EXPECT_THAT(cell->verdicts, ElementsAre(PartVerdict::failed, PartVerdict::corrected));
+}
+
 // The robot waits in front of a part that failed before its program went: refused once all answer, it calls again.
 TEST_F(Watching, ARobotThatWasLeftInFrontOfAFailedPartIsLetCallAgain) {
     cell->dead_sensor = true;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/correction/region_system.h"
+#include "core/correction/unseen_course.h"
 #include "core/correction/wrong_spots.h"
 #include "core/geometry/decompositions.h"
 #include "core/numbers.h"
@@ -94,7 +95,7 @@ struct RegionSolver::Impl {
     Spread taught_spread;
     Accepted accepted;
     WrongSpotSearch search;
-    std::vector<double> factor;
+    std::vector<double> factor, slide_mm;
     RegionSystem::Fit fit;
 
     void refuse(const Observability& seen, const State& state, const Spread& spread, RegionCorrection& r) {
@@ -137,10 +138,28 @@ struct RegionSolver::Impl {
         return std::abs(now.y() - s.reference_mm.y());
     }
 
-    void remarks(std::span<const SpotObservation> spots, Verdict verdict, RegionCorrection& r) {
+    std::vector<Text> slid_spots(std::span<const SpotObservation> spots) const {
         std::vector<Text> out;
-        for (const SpotResidual& s : r.spots) {
-            if (!s.used) out.push_back(Text("{} (off by {:.2f} mm)", s.id, s.residual_mm.norm()));
+        for (const SpotObservation& s : spots)
+            if (const double mm = unseen_slide_mm(s); mm > kNoticedSlide_mm)
+                out.push_back(Text("{} ({:.1f} mm)", s.id, mm));
+        return out;
+    }
+
+    void remarks(std::span<const SpotObservation> spots, Verdict verdict, double unseen_slope,
+                 RegionCorrection& r) {
+        std::vector<Text> out;
+        for (std::size_t n = 0; n < spots.size(); ++n) {
+            const SpotResidual& s = r.spots[n];
+            if (s.used) continue;
+            constexpr double kSteepest_deg = 8;  // nobody sets up a sensor worse
+            const double slide = unseen_slide_mm(spots[n]), off = s.residual_mm.norm();
+            const double angle_deg = deg_from_rad(std::atan2(off, slide));
+            if (slide > kNoticedSlide_mm && angle_deg < kSteepest_deg)
+                out.push_back(Text("{} (off by {:.2f} mm, as an edge {:.1f} degrees off the travel would be)",
+                                   s.id, off, angle_deg));
+            else
+                out.push_back(Text("{} (off by {:.2f} mm)", s.id, off));
         }
         const auto add = [&](const Text& sentence) { r.message = joined(r.message, "; ", sentence); };
         if (!out.empty())
@@ -158,16 +177,20 @@ struct RegionSolver::Impl {
                 "too small",
                 scatter));
         if (!out.empty() || !r.consistent || verdict == Verdict::contradictory) {
-            constexpr double kNoticedMm = 1;
-            std::vector<Text> slid;
-            for (const SpotObservation& s : spots)
-                if (const double mm = unseen_slide_mm(s); mm > kNoticedMm)
-                    slid.push_back(Text("{} ({:.1f} mm)", s.id, mm));
+            const std::vector<Text> slid = slid_spots(spots);
             if (!slid.empty())
                 add(Text(
                     "the part slid along the travel of {}, where no pass was accepted: an edge that does not "
                     "run along the travel looks wrong then: align the sensor there and accept its pass",
                     listed(slid)));
+        } else if (unseen_slope > 0) {
+            add(
+                Text("the part slid along the travel of {}, where no pass was accepted, and the residuals "
+                     "are as of "
+                     "edges {:.1f} degrees off the travel, which sigma takes in: align the sensor there and "
+                     "accept "
+                     "its pass",
+                     listed(slid_spots(spots)), deg_from_rad(unseen_slope)));
         }
         for (std::size_t n = 0; n < spots.size(); ++n) {
             constexpr double kBeyondToldMm = 0.5;
@@ -297,16 +320,23 @@ struct RegionSolver::Impl {
             refuse(seen, fit.state, spread, r);
             if (verdict == Verdict::contradictory) {
                 r.message.clear();
-                remarks(spots, verdict, r);
+                remarks(spots, verdict, 0, r);
             }
             return {};
         }
         const bool repeats = system.repeats();
-        const RegionSystem::Parts parts =
+        RegionSystem::Parts parts =
             repeats ? system.parts(fit.shared, fit.state, factor, spread) : RegionSystem::Parts{};
         if (!told_from_mirror(spread, seen)) {
             refuse(seen, fit.state, spread, r);
             return {};
+        }
+        slide_mm.resize(spots.size());
+        for (std::size_t n = 0; n < spots.size(); ++n) slide_mm[n] = unseen_slide_mm(spots[n]);
+        const UnseenCourse unseen = unseen_course(system, fit, spread, factor, slide_mm, a);
+        if (unseen) {
+            spread.covariance += unseen.added;
+            parts.random += unseen.added;
         }
         if (repeats) {
             report_spread(system, spread, seen, fit.state, &parts, r);
@@ -317,7 +347,7 @@ struct RegionSolver::Impl {
         r.sigma_at_spots_mm = system.weakest_sigma_mm(spread);
         r.displacement.workobject_from_movedworkobject = fit.state.pose();
         r.status = CorrectionStatus::ok;
-        remarks(spots, verdict, r);
+        remarks(spots, verdict, unseen.slope, r);
         const double moved = fit.state.translation.norm();
         const double turned = deg_from_rad(rotation_log(fit.state.rotation).norm());
         if (moved > options.limits.translation_mm || turned > options.limits.rotation_deg) {

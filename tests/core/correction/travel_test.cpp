@@ -84,5 +84,53 @@ TEST(Travel, FrozenContourGainsNothing) {
     EXPECT_LT(travel_covariance(s, {}, 3).norm(), 1e-24);
 }
 
+// A sensor that does not stand along its edge, and no pass that told: once the part slides, the edges' course is in the residuals.
+// What is answered with "ok" says so in its sigma, and nothing that is as it should be says anything.
+TEST(UnseenCourse, IsInTheSigmaOfWhatIsAnswered) {
+    constexpr double kNoise_mm = 0.1;
+    for (const double off_deg : {0.0, 3.0}) {
+        Rng rng(91);
+        int answered = 0, told = 0, trials = 0;
+        double squares = 0, told_squares = 0;
+        while (trials < 600) {
+            std::vector<SpotObservation> spots = door(rng, 8);
+            const Pose truth = random_displacement(rng, 15, 2, Eigen::Vector3d::Zero());
+            ++trials;
+            for (SpotObservation& s : spots) {
+                // The edge runs along the sensor's Y turned about its Z and X, through the reference.
+                const double about_z = rad_from_deg(uniform(rng, -off_deg, off_deg));
+                const double about_x = rad_from_deg(uniform(rng, -off_deg, off_deg));
+                const Eigen::Vector3d along(-std::tan(about_z), 1, std::tan(about_x));
+                const Pose m = s.workobject_from_sensor.inverse() * truth * s.workobject_from_sensor;
+                const Eigen::Vector3d p = m * s.reference_mm, d = m.linear() * along;
+                s.measured_mm = p - d * (p.y() / d.y());
+                s.sigma_mm = kNoise_mm;
+            }
+            add_noise(spots, rng, kNoise_mm);
+            const auto r = solve_region(spots, {});
+            ASSERT_TRUE(r);
+            if (r->status != CorrectionStatus::ok || !r->consistent) continue;
+            const Pose& d = r->displacement.workobject_from_movedworkobject;
+            Vector6 error;
+            error << truth.translation() - d.translation(),
+                rotation_log(truth.linear() * d.linear().transpose());
+            const double square = error.dot(r->covariance.ldlt().solve(error)) / 6;
+            ++answered;
+            squares += square;
+            if (std::string(r->message.english()).find("which sigma takes in") == std::string::npos) continue;
+            ++told;
+            told_squares += square;
+        }
+        if (off_deg == 0) {
+            EXPECT_GE(answered, 590);
+            EXPECT_LE(told, 15);  // 1 % of 600, and a half
+            EXPECT_NEAR(squares / answered, 1, 0.1);
+        } else {
+            EXPECT_GE(told, 60);
+            EXPECT_LT(told_squares / told, 3);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace seamwright

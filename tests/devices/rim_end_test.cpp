@@ -91,7 +91,7 @@ TEST(RimEnd, OfADisplacedDoorRepeatsWithinItsCovariance) {
     EXPECT_LT(nees, 1.5);
     EXPECT_GT(nees, 0.3) << "too unsure";
     EXPECT_LT(std::sqrt(z_error), 0.08);
-    EXPECT_LT(std::sqrt(z_stated), 0.12);
+    EXPECT_LT(std::sqrt(z_stated), 0.125);
 }
 
 }  // namespace

@@ -55,28 +55,53 @@ std::vector<ContourEnd> ends_of(const Profile& p) {
     return out;
 }
 
+namespace {
+
+// The end that the reference point lies on.
+const ContourEnd* end_at(const std::vector<ContourEnd>& ends, const Eigen::Vector2d& point) {
+    constexpr double kNear_mm = 1.5;
+    const auto off = [&](const ContourEnd& e) { return (e.at - point).norm(); };
+    const auto own = std::min_element(ends.begin(), ends.end(),
+                                      [&](const auto& a, const auto& b) { return off(a) < off(b); });
+    return own == ends.end() || off(*own) > kNear_mm ? nullptr : &*own;
+}
+
+// The profiles on one side of the reference's, the nearest first: each is searched for where its inner neighbour's was.
+std::vector<std::size_t> outwards(std::size_t reference, std::span<const TravelProfile> pass,
+                                  const std::vector<std::size_t>& order, bool forward) {
+    const double y0 = pass[reference].travel_mm;
+    std::vector<std::size_t> out;
+    for (const std::size_t i : order)
+        if (i != reference && (pass[i].travel_mm >= y0) == forward) out.push_back(i);
+    std::stable_sort(out.begin(), out.end(), [&](auto a, auto b) {
+        return std::abs(pass[a].travel_mm - y0) < std::abs(pass[b].travel_mm - y0);
+    });
+    return out;
+}
+
+// Not the largest: now and then a return is missing beside the end.
+double usual_grain(std::vector<double>& grains) {
+    constexpr double kUsual = 0.8;
+    const auto usual =
+        grains.begin() + static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(grains.size() - 1));
+    std::nth_element(grains.begin(), usual, grains.end());
+    return *usual;
+}
+
+}  // namespace
+
 EndOffsets end_offsets(const Reference& reference, std::span<const TravelProfile> pass,
                        const std::vector<std::size_t>& order, const Eigen::Vector2d& point) {
-    constexpr double kNear_mm = 1.5, kLost_mm = 2;
+    constexpr double kLost_mm = 2;
     const std::vector<ContourEnd> taught = ends_of(pass[reference.index].profile);
-    const auto off = [&](const ContourEnd& e) { return (e.at - point).norm(); };
-    const auto own = std::min_element(taught.begin(), taught.end(),
-                                      [&](const auto& a, const auto& b) { return off(a) < off(b); });
-    if (own == taught.end() || off(*own) > kNear_mm || !own->clear) return {};
+    const ContourEnd* own = end_at(taught, point);
+    if (!own || !own->clear) return {};
     EndOffsets answer{std::vector<std::optional<Eigen::Vector2d>>(pass.size())};
     auto& out = answer.off;
     std::vector<double> grains{own->grain_mm};
-    const double y0 = pass[reference.index].travel_mm;
-    // Outwards from the reference, each searched for where its inner neighbour's was.
     for (const bool forward : {true, false}) {
-        std::vector<std::size_t> outwards;
-        for (const std::size_t i : order)
-            if (i != reference.index && (pass[i].travel_mm >= y0) == forward) outwards.push_back(i);
-        std::stable_sort(outwards.begin(), outwards.end(), [&](auto a, auto b) {
-            return std::abs(pass[a].travel_mm - y0) < std::abs(pass[b].travel_mm - y0);
-        });
         Eigen::Vector2d last = Eigen::Vector2d::Zero();
-        for (const std::size_t i : outwards) {
+        for (const std::size_t i : outwards(reference.index, pass, order, forward)) {
             const Registered& f = reference.found[i];
             if (!f.ok) continue;
             const PlanarMotion motion = motion_of(f, point);
@@ -96,12 +121,7 @@ EndOffsets end_offsets(const Reference& reference, std::span<const TravelProfile
             grains.push_back(grain_mm);
         }
     }
-    // Now and then a return is missing beside the end.
-    constexpr double kUsual = 0.8;
-    const auto usual =
-        grains.begin() + static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(grains.size() - 1));
-    std::nth_element(grains.begin(), usual, grains.end());
-    answer.grain_mm = *usual;
+    answer.grain_mm = usual_grain(grains);
     answer.broken = taught.size() > 2;
     return answer;
 }
@@ -110,15 +130,7 @@ namespace {
 
 constexpr double kHeld_mm = 10;  // of the piece
 
-// The end that the reference point lies on, and its piece from there inwards.
-const ContourEnd* own_end(const std::vector<ContourEnd>& ends, const Eigen::Vector2d& point) {
-    constexpr double kNear_mm = 1.5;
-    const auto off = [&](const ContourEnd& e) { return (e.at - point).norm(); };
-    const auto own = std::min_element(ends.begin(), ends.end(),
-                                      [&](const auto& a, const auto& b) { return off(a) < off(b); });
-    return own == ends.end() || off(*own) > kNear_mm || !own->sharp ? nullptr : &*own;
-}
-
+// The piece of `end` from there inwards.
 std::vector<Eigen::Vector2d> piece_of(const Profile& p, const ContourEnd& end,
                                       const std::vector<ContourEnd>& ends) {
     std::size_t stop = end.begins ? p.size() - 1 : 0;
@@ -281,12 +293,12 @@ std::optional<EndMotion> follow_end(const Reference& reference, std::span<const 
                                     const std::vector<std::size_t>& order, const Eigen::Vector2d& point) {
     constexpr double kLost_mm = 2, kBeyond = 3, kAtRim = 0.5;  // grains
     constexpr int kMayLieThere = 3;
-    constexpr double kUsual = 0.8, kMostAhead = 2;
+    constexpr double kMostAhead = 2;
     const Profile& taught = pass[reference.index].profile;
     const std::vector<ContourEnd> ends = ends_of(taught);
-    const ContourEnd* own = own_end(ends, point);
+    const ContourEnd* own = end_at(ends, point);
     Course course;
-    if (!own || !course.make(piece_of(taught, *own, ends))) return std::nullopt;
+    if (!own || !own->sharp || !course.make(piece_of(taught, *own, ends))) return std::nullopt;
     // How far the field of view reaches, beyond doubt; seen from the end.
     const double sign = own->begins ? -1 : 1;
     double rim = -std::numeric_limits<double>::infinity();
@@ -302,15 +314,9 @@ std::optional<EndMotion> follow_end(const Reference& reference, std::span<const 
     std::vector<std::size_t> at_rim;
     const double y0 = pass[reference.index].travel_mm;
     for (const bool forward : {true, false}) {
-        std::vector<std::size_t> outwards;
-        for (const std::size_t i : order)
-            if (i != reference.index && (pass[i].travel_mm >= y0) == forward) outwards.push_back(i);
-        std::stable_sort(outwards.begin(), outwards.end(), [&](auto a, auto b) {
-            return std::abs(pass[a].travel_mm - y0) < std::abs(pass[b].travel_mm - y0);
-        });
         Eigen::Vector2d last = own->at, slope = Eigen::Vector2d::Zero();
         double last_y = y0, phi = 0;
-        for (const std::size_t i : outwards) {
+        for (const std::size_t i : outwards(reference.index, pass, order, forward)) {
             const double on = pass[i].travel_mm - last_y;
             const Eigen::Vector2d expected = last + slope * std::clamp(on, -kMostAhead, kMostAhead);
             const std::vector<ContourEnd> seen = ends_of(pass[i].profile);
@@ -342,13 +348,10 @@ std::optional<EndMotion> follow_end(const Reference& reference, std::span<const 
     if (static_cast<int>(at_rim.size()) > kMayLieThere)
         for (const std::size_t i : at_rim) answer.offsets[i].ok = false;
     if (grains.empty()) return std::nullopt;
-    const auto usual =
-        grains.begin() + static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(grains.size() - 1));
-    std::nth_element(grains.begin(), usual, grains.end());
-    answer.grain_mm =
-        course.pinned_by_x()
-            ? Eigen::Vector2d(*usual, *usual * std::abs(course.inwards.y() / course.inwards.x()))
-            : Eigen::Vector2d(*usual * course.inwards.cwiseAbs());
+    const double grain = usual_grain(grains);
+    answer.grain_mm = course.pinned_by_x()
+                          ? Eigen::Vector2d(grain, grain * std::abs(course.inwards.y() / course.inwards.x()))
+                          : Eigen::Vector2d(grain * course.inwards.cwiseAbs());
     return answer;
 }
 

@@ -186,10 +186,9 @@ struct RegionSolver::Impl {
         } else if (unseen_slope > 0) {
             add(
                 Text("the part slid along the travel of {}, where no pass was accepted, and the residuals "
-                     "are as of "
-                     "edges {:.1f} degrees off the travel, which sigma takes in: align the sensor there and "
-                     "accept "
-                     "its pass",
+                     "are as of edges {:.1f} degrees off the travel, which sigma takes in: align the sensor "
+                     "there and "
+                     "accept its pass",
                      listed(slid_spots(spots)), deg_from_rad(unseen_slope)));
         }
         for (std::size_t n = 0; n < spots.size(); ++n) {

@@ -111,7 +111,7 @@ void ProgramDialog::show_request() {
                               .arg(request->frames.size())
                               .arg(names.join(", "));
     const QString clash = said_of_same_files(*request, *files);
-    set_verdict(*verdict_, clash.isEmpty() ? holds : holds + QChar(0x2e) + QChar(0x20) + clash,
+    set_verdict(*verdict_, clash.isEmpty() ? holds : QStringLiteral("%1. %2").arg(holds, clash),
                 clash.isEmpty() ? Tone::good : Tone::attention);
 }
 
@@ -125,10 +125,9 @@ QString ProgramDialog::said_of_same_files(const ProgramRequest& request,
         types << QString::fromStdString(type);
     if (types.isEmpty()) return {};
     return tr("The files of part type %1 have the same names: a controller holds the program of one type, "
-              "the one that "
-              "was loaded last, and parts of the others are refused at their start. Write each type into a "
-              "folder of "
-              "its own, and load the one that comes.")
+              "the one that was loaded last, and parts of the others are refused at their start. Write each "
+              "type into a "
+              "folder of its own, and load the one that comes.")
         .arg(types.join(QStringLiteral(", ")));
 }
 
@@ -148,7 +147,7 @@ void ProgramDialog::choose_folder() {
         return set_verdict(*verdict_, shown_error(tr("The program was not written."), written.error()),
                            Tone::alarm);
     const QString done = tr("%1 files written to %2").arg(written->size()).arg(folder);
-    set_verdict(*verdict_, same_files_.isEmpty() ? done : done + QChar(0x2e) + QChar(0x20) + same_files_,
+    set_verdict(*verdict_, same_files_.isEmpty() ? done : QStringLiteral("%1. %2").arg(done, same_files_),
                 same_files_.isEmpty() ? Tone::good : Tone::attention);
 }
 

@@ -461,8 +461,7 @@ void GuidedPage::refresh_use() {
         const QString words =
             d.points == 0 ? tr("It has nothing in common with calibration %1, in use.").arg(text(before->id))
                           : tr("Against calibration %1, in use: the same pixel lies up to %2 mm elsewhere "
-                               "(mean %3 mm); "
-                               "sensor shifted %4 mm, turned %5°.")
+                               "(mean %3 mm); sensor shifted %4 mm, turned %5°.")
                                 .arg(text(before->id), number(d.largest_mm, 3), number(d.mean_mm, 3),
                                      number(d.shift_mm, 3), number(d.turn_deg, 3));
         against << (chains ? tr("Sensor %1: %2").arg(text(now.sensor_id), words) : words);

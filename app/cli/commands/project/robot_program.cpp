@@ -36,8 +36,7 @@ Expected<Answer> write_program(const ProgramArguments& a) {
         answer.json["same_files_as"] = types;
         answer.text += fmt::format(
             "the files of part type {} have the same names: a controller holds the program of one type, the "
-            "one that "
-            "was loaded last\n",
+            "one that was loaded last\n",
             fmt::join(types, ", "));
     }
     return answer;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <string_view>
 
 namespace seamwright::ur {
 
@@ -47,6 +49,18 @@ Expected<std::string> Dashboard::ask(const std::string& question) {
     auto answer = ask_once(question);
     // A connection that the controller closed since (it was switched off) says nothing of the controller now.
     if (!answer && old && !is_silence(answer.error())) answer = ask_once(question);
+    return answer;
+}
+
+Expected<std::optional<std::string>> Dashboard::ask_if_known(const std::string& question) {
+    constexpr std::string_view kUnknown = "could not understand";
+    SEAM_TRY(auto answer, ask(question));
+    const auto same = [](char unknown, char said) {
+        return std::tolower(static_cast<unsigned char>(said)) == unknown;
+    };
+    if (answer.size() >= kUnknown.size() &&
+        std::equal(kUnknown.begin(), kUnknown.end(), answer.begin(), same))
+        return std::nullopt;
     return answer;
 }
 

@@ -15,6 +15,9 @@ class Dashboard {
     // Connects where needed, anew where the other side has closed. Error (device): not reachable, silence, a
     // line over 1000 bytes; the connection is dropped and the next question connects anew.
     Expected<std::string> ask(const std::string& question);
+    // The same; nothing where the server does not know the question: older versions know fewer, and their line says so in words
+    // ("could not understand: ..", the protocol has no code).
+    Expected<std::optional<std::string>> ask_if_known(const std::string& question);
     void close() { connection_.reset(); }
 
   private:

@@ -200,13 +200,10 @@ Expected<void> RtdeLink::drive_to(const Pose& base_from_flange) {
 }
 
 Expected<RobotIdentity> RtdeLink::ask_identity() {
-    SEAM_TRY(auto model, dashboard_.ask("get robot model"));
-    SEAM_TRY(auto serial, dashboard_.ask("get serial number"));
-    // PolyScope before 3.12 and 5.6 knows neither question; its refusal would be the serial number of every robot.
-    for (std::string* told : {&model, &serial})
-        if (told->starts_with("could not understand") || told->starts_with("Could not understand"))
-            told->clear();
-    return RobotIdentity{"ur-rtde", "Universal Robots", model, serial};
+    // PolyScope before 3.12 and 5.6 knows neither question.
+    SEAM_TRY(const auto model, dashboard_.ask_if_known("get robot model"));
+    SEAM_TRY(const auto serial, dashboard_.ask_if_known("get serial number"));
+    return RobotIdentity{"ur-rtde", "Universal Robots", model.value_or(""), serial.value_or("")};
 }
 
 Expected<void> RtdeLink::same_robot() {

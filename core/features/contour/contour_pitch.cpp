@@ -36,10 +36,12 @@ int ContourPitch::most_mixed() const {
 double ContourPitch::ramp_misfit(std::span<const double> x, std::span<const double> z, std::size_t a,
                                  std::size_t b, double sigma_mm) const {
     constexpr std::size_t kSide = 4;
-    constexpr double kLeastPitches = 3.5, kLeastSigmas = 10, kFlatter = 0.5, kMostSigmas = 2, kMostOfRise = 0.04;
+    constexpr double kLeastPitches = 3.5, kLeastSigmas = 10, kFlatter = 0.5, kMostSigmas = 2,
+                     kMostOfRise = 0.04;
     constexpr double kNone = std::numeric_limits<double>::infinity();
     if (a + 1 < kSide || b + kSide > x.size()) return kNone;
-    const double length = std::abs(x[b] - x[a]), least = std::max(kLeastSigmas * sigma_mm, kLeastPitches * distance);
+    const double length = std::abs(x[b] - x[a]),
+                 least = std::max(kLeastSigmas * sigma_mm, kLeastPitches * distance);
     if (std::abs(z[b] - z[a]) < 0.5 * least || std::abs(length / along_x - most_mixed()) > 1.5) return kNone;
     // By the lines, which a mean goes by; by x where some of them are missing.
     const bool all_there = std::abs(length / along_x - double(b - a)) < 0.75;

@@ -5,16 +5,27 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <tuple>
+
+#include "core/median.h"
+#include "core/profile/no_return.h"
 
 namespace seamwright {
 namespace {
 
 constexpr int kSharedCellsOfOneSegment = 3;
 constexpr int kDirectionCells = 5;  // to either side, for the direction of the contour in a cell
+// A step that the heads see at different places.
+constexpr int kStepCells = 8, kFewestStepCells = 3;  // of a surface beside it, for its line
+constexpr double kStepSigma = 6;                     // of a shared cell's distance
+constexpr double kOnTheLine = 0.3;                   // of the step
+constexpr double kEvenPitches = 1.5;                 // within which a field's rims lie evenly about x = 0
+constexpr std::size_t kFewestOfTwo = 64, kFewestOfOne = 256;  // lines
 
 struct Point {
     double x, z;
@@ -27,6 +38,8 @@ struct Side {
     std::vector<Point> points;  // in sensor order
     double pitch = 0;
     double off_plane = 0;
+    std::array<int, 2> empty{};  // lines without a usable return beyond the points, towards -x and +x
+    bool every_line = false;     // the profile lists them
 };
 
 // The points of one head in a cell that belong to one piece.
@@ -60,9 +73,12 @@ Side side_of(const Profile& profile, const Head& head, int first_piece, int& pie
     Side side;
     std::map<std::int32_t, int> piece_of;
     std::vector<double> steps;
+    std::size_t first = profile.size(), last = 0;
     for (std::size_t i = 0; i < profile.size(); ++i) {
         const double x = profile.x_mm[i], z = profile.z_mm[i];
         if (profile.segment[i] == kOutlier || !std::isfinite(x) || !std::isfinite(z)) continue;
+        first = std::min(first, i);
+        last = i;
         const Eigen::Vector3d p = head.sensor_from_head * Eigen::Vector3d(x, 0, z);
         const int piece =
             piece_of.try_emplace(profile.segment[i], first_piece + static_cast<int>(piece_of.size()))
@@ -78,6 +94,10 @@ Side side_of(const Profile& profile, const Head& head, int first_piece, int& pie
         const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
         std::nth_element(steps.begin(), middle, steps.end());
         side.pitch = *middle;
+    }
+    if (!side.points.empty()) {
+        side.empty = {static_cast<int>(first), static_cast<int>(profile.size() - 1 - last)};
+        if (side.points.front().x > side.points.back().x) std::swap(side.empty[0], side.empty[1]);
     }
     return side;
 }
@@ -168,6 +188,70 @@ Eigen::Vector2d normal_at(const std::vector<Shared>& shared, std::size_t k) {
     return normal.y() < 0 ? Eigen::Vector2d(-normal) : normal;
 }
 
+// A step that one head sees farther on than the other: in the cells [first, last] of `shared` one of them still sees the
+// surface on the left, the other already that on the right.
+struct StepZone {
+    std::size_t first, last;
+    bool first_head_on_left;
+};
+
+// z of the surface that the cells from `from` on show in both heads, going on to x; nullopt: there is none.
+template <class Apart>
+std::optional<double> beside(const std::vector<Shared>& shared, std::ptrdiff_t from, std::ptrdiff_t step,
+                             double x, const Apart& apart) {
+    double n = 0, sx = 0, sz = 0, sxx = 0, sxz = 0;
+    for (std::ptrdiff_t k = from; k >= 0 && k < static_cast<std::ptrdiff_t>(shared.size()) && n < kStepCells;
+         k += step) {
+        const Shared& s = shared[static_cast<std::size_t>(k)];
+        if (apart(s)) break;
+        const double ahead = s.mean.x() - x;
+        n += 1;
+        sx += ahead, sz += s.mean.y(), sxx += ahead * ahead, sxz += ahead * s.mean.y();
+    }
+    if (n < kFewestStepCells) return std::nullopt;
+    return (sxx * sz - sx * sxz) / (n * sxx - sx * sx);
+}
+
+std::vector<StepZone> steps_between(const std::vector<Shared>& shared) {
+    // The same with the heads exchanged.
+    std::vector<double> off, back;
+    for (const Shared& s : shared) {
+        off.push_back(s.second->z - s.first->z);
+        back.push_back(-off.back());
+    }
+    const double usual = off.empty() ? 0 : 0.5 * (median(off) - median(back));
+    const auto sigma = [](const Shared& s) { return std::sqrt(1 / s.first->weight + 1 / s.second->weight); };
+    const auto apart = [&](const Shared& s) {
+        return std::abs(s.second->z - s.first->z - usual) > kStepSigma * sigma(s);
+    };
+    std::vector<StepZone> zones;
+    for (std::size_t k = 0; k < shared.size(); ++k) {
+        if (!apart(shared[k])) continue;
+        std::size_t last = k;
+        while (last + 1 < shared.size() && apart(shared[last + 1])) ++last;
+        bool first_left = true, second_left = true;
+        for (std::size_t i = k; i <= last; ++i) {
+            const Shared& s = shared[i];
+            const auto left = beside(shared, static_cast<std::ptrdiff_t>(k) - 1, -1, s.mean.x(), apart);
+            const auto right = beside(shared, static_cast<std::ptrdiff_t>(last) + 1, 1, s.mean.x(), apart);
+            const double height = left && right ? std::abs(*left - *right) : 0;
+            const auto on = [&](const Group& g, double z) { return std::abs(g.z - z) < kOnTheLine * height; };
+            first_left = first_left && height > 0 && on(*s.first, *left) && on(*s.second, *right);
+            second_left = second_left && height > 0 && on(*s.second, *left) && on(*s.first, *right);
+        }
+        if (first_left != second_left) zones.push_back({k, last, first_left});
+        k = last;
+    }
+    return zones;
+}
+
+// Gives the points beyond x their own piece, of those that belong to `piece`.
+void part(Side& side, int piece, double x, int& pieces) {
+    for (Point& p : side.points)
+        if (p.piece == piece && p.x >= x) p.piece = pieces;
+    ++pieces;
+}
+
 void compare(const std::vector<Shared>& shared, DoubleHeadProfile& out) {
     double squares = 0, sum = 0, weights = 0;
     for (std::size_t k = 0; k < shared.size(); ++k) {
@@ -205,7 +289,24 @@ struct Merged {
     int piece;
 };
 
-void write(std::vector<Merged> points, bool with_intensity, DoubleHeadProfile& out) {
+// Lines without return beyond the outermost points: as many as the head that saw them has there, of both the fewer, and one
+// more, which makes the profile's first and last line the rims of the field. None where that head does not list them.
+int empty_beyond(const Side& a, const Side& b, std::size_t end, double cell_mm) {
+    const auto reach = [&](const Side& s) {
+        double most = -std::numeric_limits<double>::infinity();
+        for (const Point& p : s.points) most = std::max(most, end == 0 ? -p.x : p.x);
+        return most;
+    };
+    const double outermost = std::max(reach(a), reach(b));
+    std::optional<int> fewest;
+    for (const Side* s : {&a, &b})
+        if (s->every_line && reach(*s) >= outermost - cell_mm)
+            fewest = std::min(fewest.value_or(s->empty[end]), s->empty[end]);
+    return fewest ? 1 + *fewest : 0;
+}
+
+void write(std::vector<Merged> points, const std::array<int, 2>& empty, bool with_intensity,
+           DoubleHeadProfile& out) {
     std::map<int, std::pair<double, double>> first;  // least (x, z) of a piece
     for (const Merged& p : points) {
         const auto at = std::pair(p.x, p.z);
@@ -220,17 +321,22 @@ void write(std::vector<Merged> points, bool with_intensity, DoubleHeadProfile& o
     std::sort(points.begin(), points.end(), [](const Merged& a, const Merged& b) {
         return std::tie(a.piece, a.x, a.z) < std::tie(b.piece, b.x, b.z);
     });
-    for (const Merged& p : points) {
+    const auto line = [&](const Merged& p) {
         out.profile.x_mm.push_back(p.x);
         out.profile.z_mm.push_back(p.z);
         out.profile.segment.push_back(p.piece);
         if (with_intensity) out.profile.intensity.push_back(static_cast<float>(p.intensity));
         out.sigma_mm.push_back(p.sigma);
-    }
+    };
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const Merged none{kNone, kNone, 0, kNone, kOutlier};
+    for (int i = 0; i < empty[0]; ++i) line(none);
+    for (const Merged& p : points) line(p);
+    for (int i = 0; i < empty[1]; ++i) line(none);
 }
 
-void merge(const Cells& cells, const std::vector<Shared>& shared, int pieces, bool with_intensity,
-           DoubleHeadProfile& out) {
+void merge(const Cells& cells, const std::vector<Shared>& shared, int pieces, const std::array<int, 2>& empty,
+           bool with_intensity, DoubleHeadProfile& out) {
     Pieces joined(pieces);
     for (const Shared& s : shared) joined.join(s.first->piece, s.second->piece);
     std::vector<Merged> points;
@@ -252,7 +358,7 @@ void merge(const Cells& cells, const std::vector<Shared>& shared, int pieces, bo
                           (total(*both->first) + total(*both->second)) / both->weight,
                           1 / std::sqrt(both->weight), joined.root(both->first->piece)});
     }
-    write(std::move(points), with_intensity, out);
+    write(std::move(points), empty, with_intensity, out);
 }
 
 }  // namespace
@@ -277,8 +383,8 @@ Expected<DoubleHeadProfile> merge_heads(const Profile& first, const Head& first_
 
     DoubleHeadProfile out;
     int first_pieces = 0, second_pieces = 0;
-    const Side a = side_of(first, first_head, 0, first_pieces);
-    const Side b = side_of(second, second_head, first_pieces, second_pieces);
+    Side a = side_of(first, first_head, 0, first_pieces);
+    Side b = side_of(second, second_head, first_pieces, second_pieces);
     if (!(a.pitch > 0) || !(b.pitch > 0)) {
         out.message = Text("the {} head saw no usable contour", a.pitch > 0 ? "second" : "first");
         return out;
@@ -289,13 +395,46 @@ Expected<DoubleHeadProfile> merge_heads(const Profile& first, const Head& first_
                            options.plane_limit_mm);
         return out;
     }
+    // Two fields that lie evenly about their heads' x = 0 do so by chance together less than one.
+    const auto lists = [&](std::size_t fewest) {
+        return std::pair(lists_every_line(first, kEvenPitches * a.pitch, fewest),
+                         lists_every_line(second, kEvenPitches * b.pitch, fewest));
+    };
+    std::tie(a.every_line, b.every_line) = lists(kFewestOfTwo);
+    if (!a.every_line || !b.every_line) std::tie(a.every_line, b.every_line) = lists(kFewestOfOne);
     const double pitch = std::max(a.pitch, b.pitch);
+    int pieces = first_pieces + second_pieces;
     Cells cells;
-    add_to(cells, a, 0, pitch);
-    add_to(cells, b, 1, pitch);
-    close(cells);
     int contradicting = 0;
-    std::vector<Shared> shared = share(cells, contradicting);
+    std::vector<Shared> shared;
+    const auto compare_cells = [&] {
+        cells.clear();
+        add_to(cells, a, 0, pitch);
+        add_to(cells, b, 1, pitch);
+        close(cells);
+        contradicting = 0;
+        shared = share(cells, contradicting);
+    };
+    compare_cells();
+    // At a step each head's contour is divided where this head sees it; in between they show two surfaces.
+    std::set<std::int64_t> two_surfaces;
+    const auto zones = steps_between(shared);
+    for (auto zone = zones.rbegin(); zone != zones.rend(); ++zone) {
+        const double from = double(shared[zone->first].cell) * pitch,
+                     to = double(shared[zone->last].cell + 1) * pitch;
+        std::set<int> of_first, of_second;
+        for (std::size_t k = zone->first; k <= zone->last; ++k) {
+            of_first.insert(shared[k].first->piece);
+            of_second.insert(shared[k].second->piece);
+            two_surfaces.insert(shared[k].cell);
+        }
+        for (const int piece : of_first) part(a, piece, zone->first_head_on_left ? to : from, pieces);
+        for (const int piece : of_second) part(b, piece, zone->first_head_on_left ? from : to, pieces);
+    }
+    if (!two_surfaces.empty()) {
+        compare_cells();
+        std::erase_if(shared, [&](const Shared& s) { return two_surfaces.contains(s.cell); });
+    }
     std::map<std::pair<int, int>, int> together;
     for (const Shared& s : shared) ++together[{s.first->piece, s.second->piece}];
     std::erase_if(shared, [&](const Shared& s) {
@@ -318,8 +457,8 @@ Expected<DoubleHeadProfile> merge_heads(const Profile& first, const Head& first_
         return out;
     }
     compare(shared, out);
-    merge(cells, shared, first_pieces + second_pieces, !first.intensity.empty() && !second.intensity.empty(),
-          out);
+    merge(cells, shared, pieces, {empty_beyond(a, b, 0, pitch), empty_beyond(a, b, 1, pitch)},
+          !first.intensity.empty() && !second.intensity.empty(), out);
     out.status = DoubleHeadStatus::ok;
     if (!(out.disagreement_mm <= options.disagreement_limit_mm)) {
         out.status = DoubleHeadStatus::disagree;

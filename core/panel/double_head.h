@@ -17,7 +17,14 @@
 // Segments of the two heads that share at least three cells are one segment afterwards: what one head has in
 // two pieces, because something hid the middle, is whole when the other saw it. Segments are numbered by
 // their least x and lie one after the other, each in order of x. Points without return and outliers are left
-// out.
+// out, but for what says where the field ends: beyond its first and its last point the profile has as many lines without
+// return as the head that saw the point has beyond it (of both the fewer), and one more. A head whose profile does
+// not list its lines (lists_every_line(), no_return.h) adds none.
+//
+// Steps. At the step of a lap the heads see the end of one sheet and the beginning of the other at different
+// places; in between they show two surfaces that may be nearer than kSameSurfaceMm. Where cells are more than six sigma apart,
+// one head goes on with the surface on the left and the other with that on the right, the contour is divided, each head's
+// where this head has the step, and the cells are not merged nor compared.
 //
 // Noise model: independent points, sigma_mm of a head's points in every direction; sigma of a merged point is
 // (sum 1 / sigma^2)^(-1/2). Disagreement: in each shared cell the distance of the second head's mean from the
@@ -62,7 +69,7 @@ std::string_view to_string(DoubleHeadStatus status);
 struct DoubleHeadProfile {
     DoubleHeadStatus status = DoubleHeadStatus::no_points;
     Profile profile;               // filtered; what was merged when the status is ok or disagree, else empty
-    std::vector<double> sigma_mm;  // of each point
+    std::vector<double> sigma_mm;  // of each point; NaN of a line without return
     double overlap_mm = 0;
     int shared_cells = 0;
     double disagreement_mm = 0;

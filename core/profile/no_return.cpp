@@ -10,6 +10,8 @@
 namespace seamwright {
 namespace {
 
+constexpr int kFewestEmpty = 3;
+
 constexpr int kFewestPoints = 3;
 constexpr double kFarSpreads = 5, kFar_mm = 50, kAlone_mm = 0.2;
 constexpr double kByChance = 1e-4, kAround = 0.2;
@@ -159,6 +161,18 @@ Text no_return_sentence(const std::vector<NoReturnCode>& codes) {
     for (const NoReturnCode& c : codes)
         counts = joined(counts, ", ", Text("{} points stand at z = {}", c.points, c.value));
     return Text("{}: taken for lines without return", counts);
+}
+
+bool lists_every_line(const Profile& profile, double slack_mm, std::size_t fewest) {
+    const std::size_t lines = std::min(profile.x_mm.size(), profile.z_mm.size());
+    const auto empty = [&](std::size_t k) {
+        return !std::isfinite(profile.x_mm[k]) || !std::isfinite(profile.z_mm[k]);
+    };
+    if (lines == 0) return false;
+    int count = 0;
+    for (std::size_t k = 0; k < lines; ++k) count += empty(k);
+    if (count >= kFewestEmpty || empty(0) || empty(lines - 1)) return true;
+    return lines >= fewest && std::abs(profile.x_mm[0] + profile.x_mm[lines - 1]) <= slack_mm;
 }
 
 }  // namespace seamwright

@@ -94,8 +94,7 @@ Expected<std::string> called_type(const Project& project, const std::string& id_
     }
     const Text known("known are {}", types_known(project));
     if (id_or_number.empty())
-        return input_error("no part type was said, and the project has several kinds of parts", "part types",
-                           known);
+        return input_error("no part type was said, and the project has part types", "part types", known);
     if (find_type(project, id_or_number)) return id_or_number;
     int number = 0;
     const char* end = id_or_number.data() + id_or_number.size();

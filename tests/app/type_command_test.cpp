@@ -106,8 +106,9 @@ TEST_F(TypeCommand, FromOneKindOfPartToTwoAndBack) {
                 .value("same_files_as", json()),
             json::array({other}));
     said({"type", "remove", f, "right", "--with-spots"});
-    EXPECT_FALSE(said({"robot-program", f, "--brand", "kuka", "--out", (folder / "krc").string()})
-                     .contains("same_files_as"));
+    EXPECT_FALSE(
+        said({"robot-program", f, "--brand", "kuka", "--type", "left", "--out", (folder / "krc").string()})
+            .contains("same_files_as"));
     said({"type", "remove", f, "left"});
     EXPECT_EQ(said({"run", f, "--push"})["status"], "ok");
     EXPECT_EQ(run({"check", f}).exit_code, 0);

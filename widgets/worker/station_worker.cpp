@@ -108,7 +108,9 @@ std::function<void(const RunProgress&)> StationWorker::progress_sink() {
 void StationWorker::attach_feed(Station& station) {
     if (!station.connected()) return;
     std::map<std::string, ProfileSource*> sources;
-    for (const SensorSetup& setup : station.project().sensors) sources[setup.id] = station.sensor(setup.id);
+    // A sensor that was added meanwhile is connected with the next connecting.
+    for (const SensorSetup& setup : station.project().sensors)
+        if (ProfileSource* sensor = station.sensor(setup.id)) sources[setup.id] = sensor;
     feed_.attach(sources);
 }
 

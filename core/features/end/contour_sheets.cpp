@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/numbers.h"
+#include "core/profile/no_return.h"
 
 namespace seamwright {
 namespace {
@@ -31,11 +32,9 @@ constexpr double kUpperHalf = 0.55;  // of the step, from above
 constexpr double kShadow = 0.6;      // of a step's height: so far a higher sheet may hide the lower one
 constexpr double kCoverSigma = 4;
 constexpr std::size_t kFragments = 4;  // pieces between a sheet and the one that hides it
-constexpr int kFewestEmpty = 3;
-constexpr double kEvenPitches = 1.5;  // within which a field's sides lie evenly about x = 0
+constexpr double kEvenPitches = 1.5;   // within which a field's sides lie evenly about x = 0
 constexpr double kLeastPitch_mm = 1e-12, kLeastAdvance_mm2 = 1e-24;  // the latter squared
-constexpr int kFewestLines = 256;  // of a sensor: fewer that lie evenly about x = 0 do so by chance
-constexpr int kRimLines = 5;       // an end nearer to the field's rim is none
+constexpr int kRimLines = 5;  // an end nearer to the field's rim is none
 
 }  // namespace
 
@@ -234,18 +233,8 @@ void ContourSheets::judge_ends(const Profile& profile, const SensorField& field)
     const int lines = static_cast<int>(std::min(profile.x_mm.size(), profile.z_mm.size()));
     const int n = static_cast<int>(all_x_.size());
     if (n == 0) return;
-    // Does the profile say where the field ends? One that lists lines without return does; a few holes in it
-    // may be anything.
-    int empty = 0;
-    const auto is_empty = [&](int k) {
-        return !std::isfinite(profile.x_mm[std::size_t(k)]) || !std::isfinite(profile.z_mm[std::size_t(k)]);
-    };
-    for (int k = 0; k < lines; ++k) empty += is_empty(k);
-    bool told = field.every_line || empty >= kFewestEmpty || is_empty(0) || is_empty(lines - 1);
-    if (!told) {
-        const double a = profile.x_mm.front(), b = profile.x_mm.back();
-        told = std::abs(a + b) <= kEvenPitches * pitch_.along_x + 3 * noise_ && lines >= kFewestLines;
-    }
+    const bool told =
+        field.every_line || lists_every_line(profile, kEvenPitches * pitch_.along_x + 3 * noise_);
     const double beside = kRimLines * pitch_.along_x;
     const auto at_rim = [&](int i) {
         return (told && (line_[i] < kRimLines || line_[i] >= lines - kRimLines)) ||

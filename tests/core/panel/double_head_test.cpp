@@ -266,7 +266,8 @@ TEST(DoubleHead, RefusesHostileInput) {
     const auto merged = merge_heads(holes, {}, good, {});
     ASSERT_TRUE(merged);
     EXPECT_EQ(merged->status, DoubleHeadStatus::ok);
-    for (double z : merged->profile.z_mm) EXPECT_TRUE(std::isfinite(z));
+    for (std::size_t i = 0; i < merged->profile.size(); ++i)
+        EXPECT_EQ(std::isfinite(merged->profile.z_mm[i]), merged->profile.segment[i] != kOutlier);
 }
 
 }  // namespace

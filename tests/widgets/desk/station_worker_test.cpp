@@ -152,6 +152,25 @@ TEST_F(Cancelling, ADeviceThatIsRenamedStaysConnected) {
     EXPECT_TRUE(wait_until([&] { return !desk.station().connected; }));
 }
 
+TEST_F(Cancelling, ASensorThatIsAddedIsConnectedWithTheNextConnecting) {
+    SensorSetup second = desk.project().sensors.front();
+    second.id = "B";
+    second.calibration_id.clear();
+    second.identity = {};
+    ASSERT_TRUE(desk.add(second));
+    // What is connected goes on, and is shown by its newest profile.
+    const auto before = desk.live().latest("A");
+    EXPECT_TRUE(wait_until([&] {
+        const auto now = desk.live().latest("A");
+        return now && now != before;
+    }));
+    EXPECT_TRUE(desk.station().connected);
+    EXPECT_FALSE(desk.live().attached("B"));
+    worker.connect_devices();
+    EXPECT_TRUE(wait_until([&] { return desk.live().attached("B"); }))
+        << me.troubles.join("; ").toStdString();
+}
+
 // Who changes names among two devices before the station has seen either is not answered by the wrong one.
 TEST(RenamedDevices, AreNeverMixedUp) {
     TemporaryFolder folder;

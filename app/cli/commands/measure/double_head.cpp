@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/cli/answers/result_json.h"
 #include "app/cli/arguments/no_return_option.h"
@@ -124,10 +125,11 @@ Expected<Answer> double_head(DoubleHeadArguments& a) {
     SEAM_TRY(const auto first, read_head(a.first, a));
     SEAM_TRY(const auto second, read_head(a.second, a));
     SEAM_TRY(const auto merged, merge_heads(first, heads.first, second, heads.second, a.options));
+    const auto points = std::ranges::count_if(merged.profile.z_mm, [](double z) { return std::isfinite(z); });
     Answer answer;
     answer.json = {{"status", to_string(merged.status)},
                    {"message", merged.message},
-                   {"points", merged.profile.size()},
+                   {"points", points},
                    {"overlap_mm", merged.overlap_mm},
                    {"shared_cells", merged.shared_cells},
                    {"disagreement_mm", merged.disagreement_mm},
@@ -141,8 +143,8 @@ Expected<Answer> double_head(DoubleHeadArguments& a) {
         answer.text += fmt::format(
             "{} points, {:.2f} mm seen by both; the second stands {:+.4f} +- {:.4f} mm off the first, "
             "disagreement {:.4f} of {:g} mm\n",
-            merged.profile.size(), merged.overlap_mm, merged.offset_mm, merged.offset_sigma_mm,
-            merged.disagreement_mm, a.options.disagreement_limit_mm);
+            points, merged.overlap_mm, merged.offset_mm, merged.offset_sigma_mm, merged.disagreement_mm,
+            a.options.disagreement_limit_mm);
     answer.exit_code = ok ? kExitOk : kExitVerdict;
     if (ok && !a.out.empty()) SEAM_OK(write_profile_csv(a.out, merged.profile));
     if (a.gap && ok) {

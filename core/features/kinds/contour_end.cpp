@@ -16,12 +16,13 @@
 // contour, its sigma from the fit's residuals, and not below what the profile's noise beside them makes likely; of
 // interpolated points 1.5 f times the variance, or what the residuals' likeness says (contour_noise.h).
 //     across   v + (k h^2 / 2)^2 + e^2 + d^2 + u n_z^2,   v that of the curve there, h = r - q / 2, k its curvature
-//     along    (r^2 - 2 f p^2) / 12 + (r - q)^2 / 4 + noise^2 + s (l^2 + g^2 / 6)
+//     along    (r^2 - 2 f p^2) / 12 + (r - q)^2 / 4 + noise^2 + s (l^2 + g^2 / 6) + (m p n_x^2)^2
 // k h^2 / 2: beyond the last point the contour may bend on or go on straight. e, other shape than an
 // arc: the larger of the residuals' cubic part at the point, without what noise makes of it, and the
 // distance of the last point when the mean of the last three is more than 2.5 sigma / sqrt(3) off. d: a sensor that gives
 // means of neighbours (ProfileNoise::apart()) has at the end only such of points inwards, which draws the curve that way where
-// the contour slopes; and on a bend every one lies k (m p)^2 / 6 on the inner side, of m points on either side. u: of the
+// the contour slopes, and seems half as steep there (drawn as for twice that slope), the last one along the contour as well; and on
+// a bend every one lies k (m p)^2 / 6 on the inner side, of m points on either side. u: of the
 // rounding of z (contour_noise.h) what the residuals do not show, for on a level sheet all points are rounded alike; n the normal.
 // The end is spread evenly over the reach r from the last point on. A plain end: r = q = p, hence p^2 / 12; an interpolated
 // one is spread over p and over f p, narrower than evenly over both. Else the largest of
@@ -168,7 +169,8 @@ class ContourEnd final : public FeatureFinder {
                               sheets_.noise().shared_rounding_mm2(curve.rms_mm) * normal.y() * normal.y();
         const double grazing = rounded ? grazing_variance(curve, curve.tangent(last_s), pitch, apart) : 0;
         const double along = (reach * reach - 2 * pitch * measured) / 12 +
-                             (reach - step) * (reach - step) / 4 + noise * noise + grazing;
+                             (reach - step) * (reach - step) / 4 + noise * noise + grazing +
+                             drawn_along(pitch, tangent);
         feature.covariance_mm2 = across * normal * normal.transpose() + along * tangent * tangent.transpose();
         feature.rms_mm = curve.rms_mm;
         feature.points_used = curve.used;
@@ -293,12 +295,20 @@ class ContourEnd final : public FeatureFinder {
         const Eigen::Vector3d weights = curve.cofactor * Eigen::Vector3d(1, s, s * s);
         double off = 0;
         for (std::size_t i = 0; double(i) < half && i < fit_x_.size(); ++i) {
-            const double at = curve.along(point(i)), inwards = 0.5 * (half - double(i)) * pitch;
+            const double at = curve.along(point(i)), inwards = (half - double(i)) * pitch;
             const Eigen::Vector2d tangent = curve.tangent(at);
             off +=
                 weights.dot(Eigen::Vector3d(1, at, at * at)) * inwards * std::abs(tangent.x() * tangent.y());
         }
         return std::hypot(off, curve.curvature * half * half * pitch * pitch / 6);
+    }
+
+    // The square of how far the last point is drawn along the contour: by neighbours inwards alone.
+    double drawn_along(double pitch, const Eigen::Vector2d& tangent) const {
+        const double half = 0.5 * (sheets_.noise().apart() - 1);
+        if (!(half > kEndAlone)) return 0;
+        const double inwards = half * pitch * tangent.y() * tangent.y();
+        return inwards * inwards;
     }
 
     // Twice the way from the last point to the middle of what may hold the end: the pitch; where points stand in the

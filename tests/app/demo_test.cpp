@@ -25,9 +25,10 @@ class Demo : public testing::Test {
   protected:
     std::filesystem::path folder = test_folder("demo");
     ~Demo() override { std::filesystem::remove_all(folder); }
+    void serve_the_line(const std::string& out) const;
 };
 
-TEST_F(Demo, TakesADisplacedDoorWithinATenthAndCanBeComputedAgain) {
+TEST_F(Demo, TakesADisplacedDoorWithinATenthAndThenServesTheLine) {
     const std::string project = (folder / "out" / "demo.seam").string();
     const ProgramResult r =
         run_program({"demo", "--dir", (folder / "out").string(), "--parts", "3", "--json", "-"}, folder);
@@ -50,6 +51,7 @@ TEST_F(Demo, TakesADisplacedDoorWithinATenthAndCanBeComputedAgain) {
 
     EXPECT_EQ(run_program({"check", project}, folder).exit_code, 0);
     EXPECT_EQ(run_program({"replay", project, "--jobs", "2"}, folder).exit_code, 0);
+    serve_the_line((folder / "out").string());
 }
 
 // A weak distortion, where a cost that is not the image's leads into the fold of the lens.
@@ -70,10 +72,8 @@ TEST_F(Demo, CalibratesWhereTheDistortionIsWeak) {
 }
 
 // The plant in small: the cell as a process of its own, the runner waiting for the line's calls.
-TEST_F(Demo, TheRunnerServesTheLineOverRealProtocols) {
-    const std::string out = (folder / "out").string(), project = out + "/demo.seam";
-    ProgramResult r = run_program({"demo", "--dir", out, "--parts", "1"}, folder);
-    ASSERT_EQ(r.exit_code, 0) << r.err;
+void Demo::serve_the_line(const std::string& out) const {
+    const std::string project = out + "/demo.seam";
     FILE* cell =
         // Camera and controller stand where the demo left them in cell.json.
         popen((std::string(SEAMWRIGHT_PROGRAM) + " sim-cell " + out + "/cell.json --project " + project +
@@ -119,7 +119,8 @@ TEST_F(Demo, TheRunnerServesTheLineOverRealProtocols) {
         EXPECT_TRUE(wait_for("back", 1));
     });
     // The fleet's database is away: the parts wait in the file, and nothing else waits for it.
-    r = run_program({"run", project, "--watch", "--push", "--parts", "3", "--log", log, "--fleet",
+    const ProgramResult r =
+        run_program({"run", project, "--watch", "--push", "--parts", "3", "--log", log, "--fleet",
                      "postgresql://seam:secret@127.0.0.1:1/fleet", "--station", "cell 7", "--json", "-"},
                     folder);
     EXPECT_NE(r.err.find("runs wait for the fleet's database"), std::string::npos) << r.err;

@@ -274,6 +274,26 @@ TEST_P(SharedNoise, AnEndIsAsUnsureAsItSays) {
     expect_honest(950, GetParam() == 5 ? 0.86 : 0.93);
 }
 
+// The end of a round rim, where means of the points inwards draw it along the contour as well.
+TEST_P(SharedNoise, ARoundEndIsAsUnsureAsItSays) {
+    std::uniform_real_distribution<double> unit(0, 1);
+    const auto finder =
+        make_feature_finder({"contour-end", {{"side", 1}}, {}, Eigen::Vector2d::Zero()}).value();
+    for (int i = 0; i < 500; ++i) {
+        const double pitch = 0.03 + 0.1 * unit(random_), radius = 2 + 6 * unit(random_),
+                     end = radius * std::sin(rad_from_deg(30 + 25 * unit(random_)));
+        const auto height = [&](double x) {
+            return x < 0 ? 0.0 : std::sqrt(radius * radius - x * x) - radius;
+        };
+        // The surface ends anywhere between the last point and the next.
+        const double from = end - (std::floor(20 / pitch) + unit(random_)) * pitch;
+        const Profile p = profile(pitch, 0.01 + 0.03 * unit(random_), height, from, end);
+        covers(*finder, p, {end, height(end)});
+    }
+    EXPECT_GT(found_, 480);
+    EXPECT_GE(within_, (GetParam() == 5 ? 0.88 : 0.9) * found_);
+}
+
 // Two sheets that a sensor smooths each by itself: nothing is measured between them.
 TEST_P(SharedNoise, FlushIsAsUnsureAsItSays) {
     std::uniform_real_distribution<double> unit(0, 1);

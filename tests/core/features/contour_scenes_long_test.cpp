@@ -96,7 +96,7 @@ Tally tally_of(const Kind& kind, const Shared& shared, int trials) {
 
 TEST(ContourScenes, RightOrRefusedButNeverWrong) {
     for (const Kind& kind : kinds()) {
-        const Tally tally = tally_of(kind, {}, trials_of(600));
+        const Tally tally = tally_of(kind, {}, trials_of(500));
         // Where a lap's step is at the limit of what can be seen, about nine sigma, one end in some hundred
         // is that of the other sheet.
         EXPECT_LE(tally.wrong, tally.all() / 500) << kind.name;
@@ -132,7 +132,7 @@ TEST(ContourScenes, SharedNoiseMakesNoOthers) {
             {"fillet weld, toe in a window", weld_toe, 0.97},
         };
         for (const Kind& kind : kinds) {
-            const Tally tally = tally_of(kind, shared, trials_of(600));
+            const Tally tally = tally_of(kind, shared, trials_of(300));
             EXPECT_LE(tally.wrong, tally.all() / 200)
                 << kind.name << " " << shared.smoothed << shared.speckle;
             EXPECT_GE(tally.right, kind.least_right * tally.all())

@@ -14,7 +14,7 @@ TEST(KillLong, KillsWithWriteAheadLog) {
 }
 
 TEST(FlippedBitsLong, OfTheFile) {
-    flip_bits_of_the_file(1200, 3);
+    flip_bits_of_the_file(600, 3);
 }
 
 TEST(FlippedBitsLong, OfTheRows) {

@@ -2437,7 +2437,7 @@
     </message>
     <message>
         <source>Overlay</source>
-        <translation>Overlay</translation>
+        <translation>Überlagert</translation>
     </message>
     <message>
         <source>All profiles over each other; the live one thin over the frozen one</source>

@@ -411,10 +411,11 @@ std::vector<PoseRow> CalibrationSession::rows() const {
     return rows;
 }
 
-// Where the robot has not moved in between: such a capture agrees with whatever was solved.
+// Where the robot has not moved in between: such a capture agrees with whatever was solved. Not of a method that asks for no
+// robot: there the target is moved.
 const SessionCapture* CalibrationSession::solved_at_its_place(const SessionCapture& judge) const {
     constexpr double kSame_mm = 0.5, kSame_deg = 0.1;
-    if (!judge.taken->base_from_flange) return nullptr;
+    if (!method_->robot || !judge.taken->base_from_flange) return nullptr;
     for (const SessionCapture& c : state_.captures)
         if (!c.left_out && !c.verification && c.taken->base_from_flange &&
             distance_mm(*c.taken->base_from_flange, *judge.taken->base_from_flange) < kSame_mm &&

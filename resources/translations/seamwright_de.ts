@@ -2437,7 +2437,7 @@
     </message>
     <message>
         <source>Overlay</source>
-        <translation>Overlay</translation>
+        <translation>Überlagert</translation>
     </message>
     <message>
         <source>All profiles over each other; the live one thin over the frozen one</source>
@@ -3808,6 +3808,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <translation>%1 px von %2 erlaubten</translation>
     </message>
     <message>
+        <source>Not verified: %1 stands where %2 was taken, which is solved with, and agrees whatever the answer. Move the robot and take another.</source>
+        <translation>Nicht geprüft: %1 steht dort, wo %2 aufgenommen wurde, mit der gelöst wird, und stimmt mit jeder Lösung überein. Den Roboter bewegen und eine weitere aufnehmen.</translation>
+    </message>
+    <message>
         <source>Not verified: take one more pose that is not solved with, or keep one of the list back.</source>
         <translation>Nicht geprüft: eine weitere Pose aufnehmen, mit der nicht gelöst wird, oder eine der Liste zurückhalten.</translation>
     </message>
@@ -4802,6 +4806,14 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>Why the pose is refused</source>
         <translation>Warum die Pose abgelehnt wird</translation>
+    </message>
+    <message>
+        <source>a number in %1</source>
+        <translation>eine Zahl in %1</translation>
+    </message>
+    <message>
+        <source>give millimetres and degrees</source>
+        <translation>Millimeter und Grad angeben</translation>
     </message>
     <message>
         <source>a pose of %1 numbers</source>

@@ -165,6 +165,15 @@ TEST(PoseText, EveryNotationComesBack) {
     ASSERT_TRUE(pasted);
     EXPECT_LT(angle_rad(*pasted, pose), 1e-12);
     EXPECT_FALSE(pose_from_text("1 2 3", PoseNotation::kuka_abc));
+    // A thousandth of what is meant is worse than a refusal.
+    for (const char* other : {"1.2 m, 0.3 m, 0.5 m, 0, 0, 0", "X 1.2m Y 0.3m Z 0.5m A 0 B 0 C 0",
+                              "120 cm 30 cm 50 cm 0 0 0", "1200 300 500 1.57 rad 0 rad 0 rad"})
+        EXPECT_FALSE(pose_from_text(other, PoseNotation::kuka_abc)) << other;
+    const auto with_units =
+        pose_from_text("X: 1200 mm Y: 300 mm Z: 500 mm A: 10 deg B: 0 deg C: 0 deg", PoseNotation::kuka_abc);
+    ASSERT_TRUE(with_units) << with_units.error().sentence();
+    EXPECT_DOUBLE_EQ(with_units->translation().x(), 1200);
+    EXPECT_TRUE(pose_from_text("1200 mm 300 mm 500 mm 0 rad 1.57 rad 0 rad", PoseNotation::ur_rotvec));
     EXPECT_FALSE(pose_from_text("1 0 0 0  0 2 0 0  0 0 1 0  0 0 0 1", PoseNotation::matrix));
 }
 

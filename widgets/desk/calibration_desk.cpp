@@ -107,7 +107,9 @@ void CalibrationDesk::set_doing(const QString& what) {
 Expected<void> CalibrationDesk::open(const MethodId& method, const SensorId& sensor, const RobotId& robot) {
     if (!desk_.is_open()) return usage_error("no project is open", {}, "open or make one");
     close();
-    SEAM_TRY(auto session, CalibrationSession::open(desk_.path(), method, sensor, robot));
+    std::vector<std::string> robots;
+    for (const RobotSetup& r : desk_.project().robots) robots.push_back(r.id);
+    SEAM_TRY(auto session, CalibrationSession::open(desk_.path(), method, sensor, robot, robots));
     session_ = std::move(session);
     for (const Text& notice : session_->notices()) emit refused(shown(notice));
     if (session_->state().captures.empty())
@@ -270,12 +272,12 @@ void CalibrationDesk::capture(bool verification) {
     const bool robot = session_->method().robot ||
                        std::any_of(robots.begin(), robots.end(),
                                    [&](const RobotState& r) { return r.id == session_->robot_id(); });
-    desk_.worker().take_shots(shot_sensors(), robot ? session_->robot_id() : std::string(),
-                              shows_board(kind));
+    shots_number_ = desk_.worker().take_shots(shot_sensors(), robot ? session_->robot_id() : std::string(),
+                                              shows_board(kind));
 }
 
-void CalibrationDesk::take_shots(const std::shared_ptr<const CalibrationShots>& shots) {
-    if (!waiting_for_shot_ || !session_) return;
+void CalibrationDesk::take_shots(const std::shared_ptr<const CalibrationShots>& shots, int number) {
+    if (!waiting_for_shot_ || !session_ || number != shots_number_) return;
     waiting_for_shot_ = false;
     auto settings = capture_settings();
     if (!settings) {

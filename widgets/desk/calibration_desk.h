@@ -107,7 +107,7 @@ class CalibrationDesk : public QObject {
     void post(Job job);
     void work(const std::stop_token& stop);
     void push(const QString& text, const SessionState& before);
-    void take_shots(const std::shared_ptr<const CalibrationShots>& shots);
+    void take_shots(const std::shared_ptr<const CalibrationShots>& shots, int number);
     void take_captures(std::vector<CalibrationCapture> captures, nlohmann::json settings, bool verification,
                        const QString& text);
     void solve_when_due();
@@ -126,6 +126,7 @@ class CalibrationDesk : public QObject {
     bool waiting_for_shot_ = false, shot_verifies_ = false, solving_ = false, solve_again_ = false,
          automatic_ = false, looking_ = false;
     bool look_pending_ = false;
+    int shots_number_ = 0;  // what is waited for; the answer to a capture that was cancelled comes too
     std::uint64_t generation_ = 0;  // of the session: results of an older one are dropped
     std::uint64_t looked_number_ = 0;
     LiveTarget live_;

@@ -28,6 +28,15 @@ std::vector<double> numbers_of(QString text) {
     return numbers;
 }
 
+// The unit behind a number that is not the pose's own, which is millimetres and degrees, and radians of a rotation vector.
+QString foreign_unit(const QString& text, PoseNotation notation) {
+    static const QRegularExpression lengths(R"([0-9.,]\s*(m|dm|cm|in|inch|ft|µm|um)(?![A-Za-z0-9_]))");
+    static const QRegularExpression radians(R"([0-9.,]\s*(rad)(?![A-Za-z0-9_]))");
+    if (const auto found = lengths.match(text); found.hasMatch()) return found.captured(1);
+    const auto found = notation == PoseNotation::ur_rotvec ? QRegularExpressionMatch() : radians.match(text);
+    return found.hasMatch() ? found.captured(1) : QString();
+}
+
 }  // namespace
 
 QString notation_name(PoseNotation notation) {
@@ -59,6 +68,12 @@ Expected<Pose> pose_from_text(const QString& text, PoseNotation notation) {
     const std::vector<double> n = numbers_of(text);
     Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
     const std::string where = "pose";
+    if (const QString unit = foreign_unit(text, notation); !unit.isEmpty())
+        return input_error(
+            QCoreApplication::translate("seamwright::PoseEditor", "a number in %1").arg(unit).toStdString(),
+            where,
+            QCoreApplication::translate("seamwright::PoseEditor", "give millimetres and degrees")
+                .toStdString());
     if (n.size() == 16 || n.size() == 12) {
         for (std::size_t i = 0; i < n.size(); ++i)
             matrix(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = n[i];

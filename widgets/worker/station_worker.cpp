@@ -40,6 +40,7 @@ void StationWorker::open(const std::filesystem::path& file, const Project& proje
     open_request_.emplace(file, project);
     close_request_ = false;
     opened_ = true;
+    opened_last_ = ++opening_;
     wake_.notify_all();
 }
 
@@ -50,6 +51,7 @@ void StationWorker::close() {
     open_request_.reset();
     if (!opened_) return;
     close_request_ = true;
+    opened_last_ = ++opening_;
     wake_.notify_all();
     wake_.wait(lock, [&] { return !close_request_; });
 }
@@ -102,7 +104,7 @@ void StationWorker::post(Loss loss, const QString& what, Task task) {
 }
 
 std::function<void(const RunProgress&)> StationWorker::progress_sink() {
-    return [this](const RunProgress& p) { emit progressed(p.done, p.total, shown(p.text)); };
+    return [this](const RunProgress& p) { tell(&StationWorker::progressed, p.done, p.total, shown(p.text)); };
 }
 
 void StationWorker::attach_feed(Station& station) {
@@ -121,7 +123,8 @@ void StationWorker::connect_devices() {
         auto connected = station.connect({.cancel = cancel});
         if (!connected) {
             connect_trouble_ = connected.error().text();
-            emit failed(shown_error(tr("The devices were not connected."), connected.error()));
+            tell(&StationWorker::failed,
+                 shown_error(tr("The devices were not connected."), connected.error()));
         } else {
             ++connection_;
             // A simulated robot that stands nowhere yet goes to its first spot, or home, so that there is
@@ -155,10 +158,10 @@ void StationWorker::disconnect_devices() {
 void StationWorker::run_one(Station& station, const RunOptions& options) {
     auto run = station.run(options);
     if (!run) {
-        emit failed(shown_error(tr("The part was not measured."), run.error()));
+        tell(&StationWorker::failed, shown_error(tr("The part was not measured."), run.error()));
         return;
     }
-    emit measured(std::make_shared<const RunRecord>(std::move(*run)));
+    tell(&StationWorker::measured, std::make_shared<const RunRecord>(std::move(*run)));
 }
 
 void StationWorker::measure(const std::string& part_id, bool push, bool keep_images,
@@ -173,7 +176,9 @@ void StationWorker::measure(const std::string& part_id, bool push, bool keep_ima
         options.progress = progress_sink();
         if (push)
             options.confirm_push = [&](const RunRecord& judged) {
-                return ask(cancelled, [&] { emit confirm_push(std::make_shared<const RunRecord>(judged)); });
+                return ask(cancelled, [&] {
+                    tell(&StationWorker::confirm_push, std::make_shared<const RunRecord>(judged));
+                });
             };
         run_one(station, options);
     });
@@ -187,11 +192,12 @@ void StationWorker::zero_shift(int runs, const std::string& part_type) {
         options.cancel = cancelled;
         options.progress = progress_sink();
         options.measured = [this](const RunRecord& run) {
-            emit measured(std::make_shared<const RunRecord>(run));
+            tell(&StationWorker::measured, std::make_shared<const RunRecord>(run));
         };
         if (auto zero = measure_zero_shift(station, options); !zero)
-            return emit failed(shown_error(tr("The zero shift was not measured."), zero.error()));
-        emit proven();
+            return tell(&StationWorker::failed,
+                        shown_error(tr("The zero shift was not measured."), zero.error()));
+        tell(&StationWorker::proven);
     });
 }
 
@@ -208,13 +214,16 @@ void StationWorker::known_shift(ShiftBy by, const ShiftGrid& grid, const std::st
         options.cancel = cancelled;
         options.progress = progress_sink();
         options.place = [&](const ShiftTest& test, const Pose& shift) {
-            return ask(cancelled,
-                       [&] { emit place_part(QString::fromStdString(shift_name(test, naming)), shift); });
+            return ask(cancelled, [&] {
+                tell(&StationWorker::place_part, QString::fromStdString(shift_name(test, naming)), shift);
+            });
         };
         auto proof = prove_known_shift(station, options);
         attach_feed(station);
-        if (!proof) return emit failed(shown_error(tr("The known shift was not measured."), proof.error()));
-        emit proven();
+        if (!proof)
+            return tell(&StationWorker::failed,
+                        shown_error(tr("The known shift was not measured."), proof.error()));
+        tell(&StationWorker::proven);
     });
 }
 
@@ -226,9 +235,9 @@ void StationWorker::teach(const Spot& draft, int repeats) {
         options.progress = progress_sink();
         auto spot = teach_spot(station, draft, options);
         if (!spot)
-            emit failed(shown_error(tr("The reference was not measured."), spot.error()));
+            tell(&StationWorker::failed, shown_error(tr("The reference was not measured."), spot.error()));
         else
-            emit taught(std::make_shared<const TaughtSpot>(std::move(*spot)));
+            tell(&StationWorker::taught, std::make_shared<const TaughtSpot>(std::move(*spot)));
     });
 }
 
@@ -238,9 +247,10 @@ void StationWorker::find_light(const Spot& spot) {
         options.cancel = cancelled;
         auto found = seamwright::find_light(station, spot, options);
         if (!found)
-            emit failed(shown_error(tr("The light was not found."), found.error()));
+            tell(&StationWorker::failed, shown_error(tr("The light was not found."), found.error()));
         else
-            emit light_found(std::make_shared<const LightOfSpot>(LightOfSpot{spot, std::move(*found)}));
+            tell(&StationWorker::light_found,
+                 std::make_shared<const LightOfSpot>(LightOfSpot{spot, std::move(*found)}));
     });
 }
 
@@ -251,15 +261,19 @@ void StationWorker::record_pass(const Spot& spot, double step_mm, const Alignmen
         options.cancel = cancelled;
         options.progress = progress_sink();
         auto pass = seamwright::record_pass(station, spot, options);
-        if (!pass) return emit failed(shown_error(tr("The pass was not recorded."), pass.error()));
+        if (!pass)
+            return tell(&StationWorker::failed, shown_error(tr("The pass was not recorded."), pass.error()));
         auto judged = judge_pass(spot, std::move(*pass), alignment);
-        if (!judged) return emit failed(shown_error(tr("The pass cannot be judged."), judged.error()));
-        emit passed(std::make_shared<const JudgedPass>(std::move(*judged)));
+        if (!judged)
+            return tell(&StationWorker::failed,
+                        shown_error(tr("The pass cannot be judged."), judged.error()));
+        tell(&StationWorker::passed, std::make_shared<const JudgedPass>(std::move(*judged)));
     });
 }
 
-void StationWorker::take_shots(const std::vector<std::string>& sensor_ids, const std::string& robot_id,
-                               bool board) {
+int StationWorker::take_shots(const std::vector<std::string>& sensor_ids, const std::string& robot_id,
+                              bool board) {
+    const int number = ++shots_asked_;
     post(tr("Capturing"), [=, this](Station& station, const std::stop_token& cancelled) {
         auto shots = std::make_shared<CalibrationShots>();
         for (const std::string& id : sensor_ids) {
@@ -269,8 +283,9 @@ void StationWorker::take_shots(const std::vector<std::string>& sensor_ids, const
                 shot.error().where = "sensor " + id;
             shots->push_back(std::move(shot));
         }
-        emit shots_taken(std::move(shots));
+        tell(&StationWorker::shots_taken, std::move(shots), number);
     });
+    return number;
 }
 
 void StationWorker::go_to(const std::string& robot_id, const Pose& base_from_flange) {
@@ -283,15 +298,16 @@ void StationWorker::go_to(const std::string& robot_id, const Pose& base_from_fla
             return moved ? QString() : shown_error(tr("The robot was not moved."), moved.error());
         };
         const QString trouble = move();
-        if (!trouble.isEmpty() && !cancelled.stop_requested()) emit failed(trouble);
+        if (!trouble.isEmpty() && !cancelled.stop_requested()) tell(&StationWorker::failed, trouble);
         publish(station);
-        emit arrived(robot_id, trouble);
+        tell(&StationWorker::arrived, robot_id, trouble);
     });
 }
 
 void StationWorker::search_cameras() {
     post(Loss::none, tr("Searching cameras"), [this](Station&, const std::stop_token&) {
-        emit cameras_found(std::make_shared<const std::vector<DiscoveredCamera>>(discover_cameras()));
+        tell(&StationWorker::cameras_found,
+             std::make_shared<const std::vector<DiscoveredCamera>>(discover_cameras()));
     });
 }
 
@@ -310,13 +326,14 @@ void StationWorker::stop_jog() {
 void StationWorker::move_by_hand(Station& station, const JogRequest& request) {
     RobotLink* robot = station.robot(request.robot_id);
     if (!robot)
-        return emit jogged(request.robot_id, request.base_from_flange, tr("The robot is not connected."));
+        return tell(&StationWorker::jogged, request.robot_id, request.base_from_flange,
+                    tr("The robot is not connected."));
     auto moved = robot->move_to(request.base_from_flange);
     const auto at = robot->base_from_flange();
     const QString trouble = !moved ? shown_error(tr("The robot was not moved."), moved.error())
                             : !at  ? shown_error(tr("The robot does not tell where it stands."), at.error())
                                    : QString();
-    emit jogged(request.robot_id, at ? *at : request.base_from_flange, trouble);
+    tell(&StationWorker::jogged, request.robot_id, at ? *at : request.base_from_flange, trouble);
 }
 
 void StationWorker::set_sensor_parameter(const std::string& sensor_id, const std::string& name,
@@ -324,9 +341,11 @@ void StationWorker::set_sensor_parameter(const std::string& sensor_id, const std
     post(Loss::none, tr("Setting the sensor"), [=, this](Station& station, const std::stop_token&) {
         ProfileSource* sensor = station.sensor(sensor_id);
         if (!sensor)
-            return emit failed(tr("sensor %1 is not connected").arg(QString::fromStdString(sensor_id)));
+            return tell(&StationWorker::failed,
+                        tr("sensor %1 is not connected").arg(QString::fromStdString(sensor_id)));
         if (auto set = sensor->set(name, value); !set)
-            emit failed(shown_error(tr("The sensor did not take the setting."), set.error()));
+            tell(&StationWorker::failed,
+                 shown_error(tr("The sensor did not take the setting."), set.error()));
         publish(station);
     });
 }
@@ -364,7 +383,7 @@ void StationWorker::publish(Station& station) {
             if (auto at = robot->base_from_flange()) r.base_from_flange = *at;
         state->robots.push_back(std::move(r));
     }
-    emit state_changed(std::move(state));
+    tell(&StationWorker::state_changed, std::move(state));
 }
 
 // Where devices have other names, settings, or are gone, nothing of the old ones stays on the screen.
@@ -417,6 +436,7 @@ void StationWorker::work(const std::stop_token& stop) {
             if (open_request_ || close_request_) {
                 auto opening = std::move(open_request_);
                 open_request_.reset();
+                told_of_ = opening_;
                 lock.unlock();
                 stop_live();
                 feed_.detach();
@@ -427,9 +447,9 @@ void StationWorker::work(const std::stop_token& stop) {
                     if (file)
                         station_.emplace(std::move(*file), std::move(opening->second));
                     else
-                        emit failed(shown_error(file.error()));
+                        tell(&StationWorker::failed, shown_error(file.error()));
                 }
-                emit state_changed(std::make_shared<const StationState>());
+                tell(&StationWorker::state_changed, std::make_shared<const StationState>());
                 lock.lock();
                 if (close_request_) {
                     close_request_ = false;

@@ -13,6 +13,8 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "core/alignment/alignment.h"
@@ -109,8 +111,9 @@ class StationWorker : public QObject {
     void teach_panel(const std::string& job_id, int repeats);  // panel_taught()
     void record_pass(const Spot& spot, double step_mm, const AlignmentOptions& options);
     // Robot standing still: its pose, the stripe, and with `board` a second image with the laser off, exposed
-    // for the surroundings; one sensor after another. An empty robot_id asks no robot.
-    void take_shots(const std::vector<std::string>& sensor_ids, const std::string& robot_id, bool board);
+    // for the surroundings; one sensor after another. An empty robot_id asks no robot. Returned is the number that
+    // shots_taken() answers with.
+    int take_shots(const std::vector<std::string>& sensor_ids, const std::string& robot_id, bool board);
     // Straight to a place, at the speed that the driver moves with; arrived() tells what became of it. Whether the robot may
     // be moved from the desk is Desk::go_to()'s to ask.
     void go_to(const std::string& robot_id, const Pose& base_from_flange);
@@ -127,6 +130,7 @@ class StationWorker : public QObject {
     bool losable() const;
 
   signals:
+    // All but busy_changed() are of the project that was opened last: what another's devices still said is dropped.
     void state_changed(std::shared_ptr<const seamwright::StationState> state);
     void busy_changed(bool busy, QString what);
     void progressed(int done, int total, QString text);
@@ -155,10 +159,22 @@ class StationWorker : public QObject {
     void panel_learnt(std::shared_ptr<const seamwright::LearntPanel> learnt);
     void panel_taught(std::shared_ptr<const seamwright::PanelJob> taught);
     // What failed is in them: who asked for it says it.
-    void shots_taken(std::shared_ptr<const seamwright::CalibrationShots> shots);
+    void shots_taken(std::shared_ptr<const seamwright::CalibrationShots> shots, int number);
 
   private:
     using Task = std::function<void(Station&, const std::stop_token&)>;
+    // From the station's thread. What stands in the queue of the screen's thread when another project is opened would be taken
+    // for that one's: a reference for its spot of the same name, its sensor's identity.
+    template <class... Said, class... Given>
+    void tell(void (StationWorker::*signal)(Said...), Given&&... said) {
+        QMetaObject::invokeMethod(
+            this,
+            [this, signal, of = told_of_, values = std::tuple<Said...>(std::forward<Given>(said)...)] {
+                if (of != opened_last_) return;
+                std::apply([&](const auto&... value) { emit(this->*signal)(value...); }, values);
+            },
+            Qt::QueuedConnection);
+    }
     enum class Loss { none, result };
     void post(const QString& what, Task task);
     void post(Loss loss, const QString& what, Task task);
@@ -194,6 +210,10 @@ class StationWorker : public QObject {
     std::optional<std::pair<std::filesystem::path, Project>> open_request_;
     bool close_request_ = false, busy_ = false, opened_ = false;
     Loss doing_ = Loss::none;  // while busy_
+    int opening_ = 0;          // number of the newest open() or close()
+    int opened_last_ = 0;      // the same, of the screen's thread alone
+    int told_of_ = 0;          // of the station's thread: which of them it works for
+    int shots_asked_ = 0;      // of the screen's thread
     std::stop_source cancel_;
     std::optional<bool> push_answer_;
     std::unique_ptr<LiveSensors> live_;

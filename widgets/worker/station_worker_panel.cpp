@@ -21,18 +21,23 @@ void StationWorker::fit_panel(const PanelOrder& order) {
              options.progress = progress_sink();
              if (order.push)
                  options.confirm_push = [&](const RunRecord& judged) {
-                     return ask(cancelled,
-                                [&] { emit confirm_panel(std::make_shared<const RunRecord>(judged)); });
+                     return ask(cancelled, [&] {
+                         tell(&StationWorker::confirm_panel, std::make_shared<const RunRecord>(judged));
+                     });
                  };
              const PanelMoved moved = [this](const PanelRecord& so_far, int moves) {
-                 emit panel_moved(std::make_shared<const PanelRecord>(so_far), moves);
+                 tell(&StationWorker::panel_moved, std::make_shared<const PanelRecord>(so_far), moves);
              };
              auto run = order.servo ? servo_panel(station, order.job_id, device_servoing(), options, moved)
                                     : run_panel(station, order.job_id, options);
-             if (!run) return emit failed(shown_error(tr("The panel was not measured."), run.error()));
+             if (!run)
+                 return tell(&StationWorker::failed,
+                             shown_error(tr("The panel was not measured."), run.error()));
              auto panel = with_profiles(station.project(), std::move(*run));
-             if (!panel) return emit failed(shown_error(tr("The panel was not measured."), panel.error()));
-             emit panel_measured(std::make_shared<const MeasuredPanel>(std::move(*panel)));
+             if (!panel)
+                 return tell(&StationWorker::failed,
+                             shown_error(tr("The panel was not measured."), panel.error()));
+             tell(&StationWorker::panel_measured, std::make_shared<const MeasuredPanel>(std::move(*panel)));
          });
 }
 
@@ -42,11 +47,13 @@ void StationWorker::learn_panel(const std::string& job_id) {
         options.cancel = cancelled;
         options.progress = progress_sink();
         const PanelMoved moved = [this](const PanelRecord& so_far, int moves) {
-            emit panel_moved(std::make_shared<const PanelRecord>(so_far), moves);
+            tell(&StationWorker::panel_moved, std::make_shared<const PanelRecord>(so_far), moves);
         };
         auto learnt = seamwright::learn_panel(station, job_id, device_servoing(), options, moved);
-        if (!learnt) return emit failed(shown_error(tr("The sensitivity was not learnt."), learnt.error()));
-        emit panel_learnt(std::make_shared<const LearntPanel>(std::move(*learnt)));
+        if (!learnt)
+            return tell(&StationWorker::failed,
+                        shown_error(tr("The sensitivity was not learnt."), learnt.error()));
+        tell(&StationWorker::panel_learnt, std::make_shared<const LearntPanel>(std::move(*learnt)));
     });
 }
 
@@ -63,8 +70,9 @@ void StationWorker::teach_panel(const std::string& job_id, int repeats) {
                                    station.file().path().string());
             return seamwright::teach_panel(station, *job, options);
         }();
-        if (!taught) return emit failed(shown_error(tr("The panel was not taught."), taught.error()));
-        emit panel_taught(std::make_shared<const PanelJob>(*taught));
+        if (!taught)
+            return tell(&StationWorker::failed, shown_error(tr("The panel was not taught."), taught.error()));
+        tell(&StationWorker::panel_taught, std::make_shared<const PanelJob>(*taught));
     });
 }
 

@@ -33,7 +33,7 @@ void StationWorker::measure_study(const LiveStudyOptions& asked) {
         options.cancel = cancelled;
         options.progress = progress_sink();
         options.measured = [this](const RunRecord& run) {
-            emit measured(std::make_shared<const RunRecord>(run));
+            tell(&StationWorker::measured, std::make_shared<const RunRecord>(run));
         };
         Expected<void> put;
         Expected<StudyProgress> progress;
@@ -46,17 +46,20 @@ void StationWorker::measure_study(const LiveStudyOptions& asked) {
                     put = parts.put(part, rehang);
                     return put.has_value();
                 }
-                return ask(cancelled, [&] { emit place_study_part(QString::fromStdString(part), rehang); });
+                return ask(cancelled, [&] {
+                    tell(&StationWorker::place_study_part, QString::fromStdString(part), rehang);
+                });
             };
             progress = seamwright::measure_study(station, options);
         }
         attach_feed(station);
-        if (!put) return emit failed(shown_error(tr("The part was not put in."), put.error()));
+        if (!put)
+            return tell(&StationWorker::failed, shown_error(tr("The part was not put in."), put.error()));
         if (!progress)
             return emit failed(
                 shown_error(tr("The study was not measured."), without_option(progress.error())));
-        emit proven();
-        emit studied(std::make_shared<const StudyProgress>(std::move(*progress)));
+        tell(&StationWorker::proven);
+        tell(&StationWorker::studied, std::make_shared<const StudyProgress>(std::move(*progress)));
     });
 }
 
@@ -67,24 +70,27 @@ void StationWorker::measure_robot(const MeasureRobotOptions& asked) {
         options.cancel = cancelled;
         options.progress = progress_sink();
         auto robot = seamwright::measure_robot(station, options);
-        if (!robot) return emit failed(shown_error(tr("The robot was not measured."), robot.error()));
-        emit robot_studied(std::make_shared<const MeasuredRobot>(std::move(*robot)));
+        if (!robot)
+            return tell(&StationWorker::failed,
+                        shown_error(tr("The robot was not measured."), robot.error()));
+        tell(&StationWorker::robot_studied, std::make_shared<const MeasuredRobot>(std::move(*robot)));
     });
 }
 
 void StationWorker::measure_trigger(const MeasureTriggerOptions& asked) {
-    post(tr("Latency and jitter of the trigger"),
-         [=, this](Station& station, const std::stop_token& cancelled) {
-             MeasureTriggerOptions options = asked;
-             options.keep = false;
-             options.cancel = cancelled;
-             options.progress = progress_sink();
-             auto trigger = seamwright::measure_trigger(station, options);
-             if (!trigger)
-                 return emit failed(shown_error(tr("The trigger was not measured."), trigger.error()));
-             if (!trigger->study) return emit failed(shown(trigger->unseen));
-             emit trigger_studied(std::make_shared<const MeasuredTrigger>(std::move(*trigger)));
-         });
+    post(tr("Latency and jitter of the trigger"), [=, this](Station& station,
+                                                            const std::stop_token& cancelled) {
+        MeasureTriggerOptions options = asked;
+        options.keep = false;
+        options.cancel = cancelled;
+        options.progress = progress_sink();
+        auto trigger = seamwright::measure_trigger(station, options);
+        if (!trigger)
+            return tell(&StationWorker::failed,
+                        shown_error(tr("The trigger was not measured."), trigger.error()));
+        if (!trigger->study) return tell(&StationWorker::failed, shown(trigger->unseen));
+        tell(&StationWorker::trigger_studied, std::make_shared<const MeasuredTrigger>(std::move(*trigger)));
+    });
 }
 
 void StationWorker::confirm(const std::string& spot_id) {
@@ -95,9 +101,9 @@ void StationWorker::confirm(const std::string& spot_id) {
         options.progress = progress_sink();
         auto found = confirm_spots(station, options);
         if (!found)
-            emit failed(shown_error(tr("The spot was not confirmed."), found.error()));
+            tell(&StationWorker::failed, shown_error(tr("The spot was not confirmed."), found.error()));
         else
-            emit confirmed(std::make_shared<const Confirmation>(std::move(*found)));
+            tell(&StationWorker::confirmed, std::make_shared<const Confirmation>(std::move(*found)));
     });
 }
 
@@ -115,8 +121,9 @@ void StationWorker::drive_gap(const DrivenGapPass& asked) {
         options.cancel = cancelled;
         options.progress = progress_sink();
         auto pass = gap_pass(station, options);
-        if (!pass) return emit failed(shown_error(tr("The gap was not measured."), pass.error()));
-        emit gap_passed(std::make_shared<const GapPass>(std::move(*pass)));
+        if (!pass)
+            return tell(&StationWorker::failed, shown_error(tr("The gap was not measured."), pass.error()));
+        tell(&StationWorker::gap_passed, std::make_shared<const GapPass>(std::move(*pass)));
     });
 }
 
@@ -125,8 +132,9 @@ void StationWorker::read_gap(const std::filesystem::path& capture, const Recorde
         auto reader = CaptureReader::open(capture);
         auto pass = reader ? gap_pass(station.project(), *reader, options)
                            : Expected<GapPass>(tl::unexpected(reader.error()));
-        if (!pass) return emit failed(shown_error(tr("The gap was not measured."), pass.error()));
-        emit gap_passed(std::make_shared<const GapPass>(std::move(*pass)));
+        if (!pass)
+            return tell(&StationWorker::failed, shown_error(tr("The gap was not measured."), pass.error()));
+        tell(&StationWorker::gap_passed, std::make_shared<const GapPass>(std::move(*pass)));
     });
 }
 

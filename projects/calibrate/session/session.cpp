@@ -11,6 +11,7 @@
 #include "devices/capture/capture.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/session/session_folder.h"
 
 namespace seamwright {
 namespace {
@@ -20,19 +21,6 @@ using nlohmann::json;
 
 constexpr const char* kFormat = "seamwright-calibration-session";
 constexpr int kVersion = 2;  // 1: "used_as" is one id, not a list
-
-// Device names come from people: what a folder cannot be called becomes '_'.
-std::string file_name(const std::string& text) {
-    std::string name;
-    for (const char c : text)
-        name += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.' ? c : '_';
-    while (!name.empty() && name.front() == '.') name.front() = '_';
-    return name.empty() ? "_" : name;
-}
-
-fs::path session_folder(const fs::path& project_file, const MethodId& method, const SensorId& sensor) {
-    return CalibrationSession::folder_of(project_file) / (file_name(sensor.text()) + "-" + method.text());
-}
 
 json capture_json(const CalibrationCapture& c) {
     return {{"id", c.id},
@@ -138,22 +126,24 @@ Expected<void> CalibrationSession::copy_all(const fs::path& from_project, const 
 bool CalibrationSession::exists(const fs::path& project_file, const MethodId& method,
                                 const SensorId& sensor) {
     std::error_code code;
-    return fs::exists(session_folder(project_file, method, sensor) / "session.json", code);
+    return fs::exists(session_folder(project_file, method, sensor, {}) / "session.json", code);
 }
 
 Expected<CalibrationSession> CalibrationSession::open(const fs::path& project_file, const MethodId& method,
-                                                      const SensorId& sensor, const RobotId& robot) {
+                                                      const SensorId& sensor, const RobotId& robot,
+                                                      const std::vector<std::string>& robots) {
     CalibrationSession s;
     s.method_ = find_method(method.text());
     if (!s.method_)
         return usage_error(Text("the calibration method '{}' is unknown", method.text()), "method");
     s.sensor_id_ = sensor.text();
     s.robot_id_ = robot.text();
-    s.folder_ = session_folder(project_file, method, sensor);
+    std::vector<std::string> others = robots;
+    std::erase(others, robot.text());
+    s.folder_ = session_folder(project_file, method, sensor, others);
     s.state_.settings = default_settings(*s.method_);
-    if (exists(project_file, method, sensor)) {
-        SEAM_OK(s.read());
-    }
+    std::error_code code;
+    if (fs::exists(s.folder_ / "session.json", code)) SEAM_OK(s.read());
     return s;
 }
 
@@ -421,6 +411,19 @@ std::vector<PoseRow> CalibrationSession::rows() const {
     return rows;
 }
 
+// Where the robot has not moved in between: such a capture agrees with whatever was solved. Not of a method that asks for no
+// robot: there the target is moved.
+const SessionCapture* CalibrationSession::solved_at_its_place(const SessionCapture& judge) const {
+    constexpr double kSame_mm = 0.5, kSame_deg = 0.1;
+    if (!method_->robot || !judge.taken->base_from_flange) return nullptr;
+    for (const SessionCapture& c : state_.captures)
+        if (!c.left_out && !c.verification && c.taken->base_from_flange &&
+            distance_mm(*c.taken->base_from_flange, *judge.taken->base_from_flange) < kSame_mm &&
+            angle_rad(*c.taken->base_from_flange, *judge.taken->base_from_flange) < rad_from_deg(kSame_deg))
+            return &c;
+    return nullptr;
+}
+
 // The limit is three times what the solution promises for a pose it has not seen: its own leave-out residual,
 // or the residual of the poses used where the method leaves none out.
 Verification CalibrationSession::verification() const {
@@ -445,7 +448,14 @@ Verification CalibrationSession::verification() const {
     judge(&PoseRow::rms_mm, hold_out.rms_mm, 0.05, v.worst_mm, v.limit_mm);
     judge(&PoseRow::deg, hold_out.rms_deg, 0.02, v.worst_deg, v.limit_deg);
     judge(&PoseRow::rms_px, hold_out.rms_px, 0.3, v.worst_px, v.limit_px);
-    v.poses = verification_captures();
+    for (const SessionCapture& c : state_.captures) {
+        if (c.left_out || !c.verification) continue;
+        if (const SessionCapture* solved_with = solved_at_its_place(c)) {
+            v.repeats.emplace_back(c.taken->id, solved_with->taken->id);
+            continue;
+        }
+        ++v.poses;
+    }
     const auto holds = [](double worst, double limit) { return std::isnan(worst) || worst <= limit; };
     v.confirmed =
         v.poses > 0 && !(std::isnan(v.worst_mm) && std::isnan(v.worst_deg) && std::isnan(v.worst_px)) &&

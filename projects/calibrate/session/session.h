@@ -2,8 +2,8 @@
 // One guided calibration from its first capture to the calibration in use. It grows on disk with every
 // capture and every tick, so that a killed program loses nothing, and it needs no screen.
 //
-// Folder. FILE.seam.calibration/<sensor>-<method>/ holds session.json (settings, order and marks of the
-// captures, which calibration came of it), captures/<id>.json (one capture, never changed), captures/<id>.png
+// Folder. FILE.seam.calibration/<sensor>-<method>/, or with -2, -3 where that is another robot's or another sensor's of a like
+// name, holds session.json (settings, order and marks of the captures, which calibration came of it), captures/<id>.json (one capture, never changed), captures/<id>.png
 // where a picture was taken, and result.json (the newest solution and what it was solved from). Each file is
 // written whole or not at all, a capture before the list that names it. begin_anew() keeps the finished
 // session beside, under its time.
@@ -16,6 +16,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/ids.h"
@@ -68,7 +69,9 @@ struct PoseRow {
 
 // Residual of the poses that were not solved with, against what the solution promises.
 struct Verification {
-    int poses = 0;
+    int poses = 0;  // that judge
+    // Kept back, but the robot stands where one was solved with: {kept back, solved with}. It judges nothing.
+    std::vector<std::pair<std::string, std::string>> repeats;
     bool confirmed = false;
     double worst_mm = kNone, worst_deg = kNone, worst_px = kNone;  // NaN: the method has none
     double limit_mm = kNone, limit_deg = kNone, limit_px = kNone;
@@ -78,10 +81,12 @@ class CalibrationSession {
   public:
     // The unfinished or finished session of this sensor and method, or a new one. Error (file): the folder
     // cannot be written, a session.json that is none. A capture file that is missing or damaged is left out
-    // of the list and named in notices().
+    // of the list and named in notices(). `robots`: the project's; what was captured with another of them is that one's
+    // session, and what was with one that is none of them goes on, the robot has another name now.
     static Expected<CalibrationSession> open(const std::filesystem::path& project_file,
                                              const MethodId& method, const SensorId& sensor,
-                                             const RobotId& robot);
+                                             const RobotId& robot,
+                                             const std::vector<std::string>& robots = {});
     static std::filesystem::path folder_of(const std::filesystem::path& project_file);
     // Sessions go with their project: copied when it is saved under another name, put aside under their time
     // when another project takes the file's place. Nothing to do is no Error.
@@ -143,6 +148,7 @@ class CalibrationSession {
     CalibrationSession() = default;
     Expected<void> write_list(const SessionState& state, const std::vector<std::string>& used_as) const;
     Expected<void> read();
+    const SessionCapture* solved_at_its_place(const SessionCapture& judge) const;
 
     const CalibrationMethod* method_ = nullptr;
     std::string sensor_id_, robot_id_;

@@ -303,6 +303,51 @@ TEST_F(Session, GoesWithItsProject) {
     ASSERT_TRUE(CalibrationSession::put_aside(other)) << "nothing to do is no error";
 }
 
+// Folders are called after sensors, whose names may make the same one.
+TEST_F(Session, NobodysCapturesAreTakenForAnothers) {
+    const auto of = [&](const char* sensor, const char* robot, const std::vector<std::string>& robots) {
+        return CalibrationSession::open(project, MethodId("tcp-sphere"), SensorId(sensor), RobotId(robot),
+                                        robots)
+            .value();
+    };
+    const auto captures = [](const CalibrationSession& s) { return s.state().captures.size(); };
+    const std::vector<std::string> both{"R1", "R2"};
+    CalibrationSession first = of("Kopf ä", "R1", both);
+    capture(first, 2);
+    EXPECT_FALSE(CalibrationSession::exists(project, MethodId("tcp-sphere"), SensorId("Kopf ö")));
+    CalibrationSession other = of("Kopf ö", "R1", both);
+    EXPECT_EQ(captures(other), 0U) << "they are of the sensor Kopf ä";
+    capture(other, 3);
+    CalibrationSession robot = of("Kopf ä", "R2", both);
+    EXPECT_EQ(captures(robot), 0U) << "they were taken on R1";
+    capture(robot, 1);
+    EXPECT_EQ(captures(of("Kopf ä", "R1", both)), 2U);
+    EXPECT_EQ(captures(of("Kopf ö", "R1", both)), 3U);
+    EXPECT_EQ(captures(of("Kopf ä", "R2", both)), 1U);
+    EXPECT_EQ(captures(of("Kopf ö", "Q", {"Q"})), 3U) << "the robot was given another name";
+}
+
+// Captured twice without moving the robot: the second agrees with any answer, and verifies none.
+TEST_F(Session, WhereTheRobotHasNotMovedNothingIsVerified) {
+    CalibrationSession s = open();
+    capture(s, 8);
+    const Pose last = *s.state().captures.back().taken->base_from_flange;
+    ASSERT_TRUE(s.add(shoot(*cell, s, truth(), last, 300), true));
+    solve(s);
+    Verification v = s.verification();
+    EXPECT_EQ(v.poses, 0);
+    EXPECT_FALSE(v.confirmed);
+    ASSERT_EQ(v.repeats.size(), 1U);
+    EXPECT_EQ(v.repeats[0], (std::pair<std::string, std::string>{"P9", "P8"}));
+    EXPECT_EQ(s.stage(), SessionStage::verify);
+    // Solved without the one that stands there, it judges.
+    ASSERT_TRUE(s.leave_out("P8", true));
+    solve(s);
+    v = s.verification();
+    EXPECT_EQ(v.poses, 1);
+    EXPECT_TRUE(v.confirmed);
+}
+
 TEST_F(Session, SaysWhatIsNotSeen) {
     CalibrationSession s = open();
     const Calibration base = truth();

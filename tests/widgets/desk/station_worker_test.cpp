@@ -347,5 +347,28 @@ TEST_F(Cancelling, LeavingTheProjectEndsWhatRuns) {
     EXPECT_EQ(old[0].status, RunStatus::cancelled);
 }
 
+// What the old project's devices said stands in the queue while the screen opens another: it is not of that one.
+TEST_F(Cancelling, WhatTheOldProjectsDevicesSaidIsNotOfTheNewOne) {
+    Project other = desk.project();
+    other.sensors[0].identity.serial = "another camera";
+    other.robots[0].identity.serial = "another controller";
+    int taught = 0;
+    QObject::connect(&worker, &StationWorker::taught, &desk, [&] { ++taught; });
+    worker.teach(desk.project().spots[0], 1);
+    // Unheard, until the reference is measured and the devices have told their state.
+    for (int i = 0; i < 2000 && worker.busy(); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ASSERT_FALSE(worker.busy());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+    ASSERT_TRUE(desk.create(folder / "b.seam", other));
+    EXPECT_FALSE(wait_until([&] { return taught > 0 || desk.station().connected; }, 500));
+    EXPECT_EQ(taught, 0) << "it would be the reference of this project's spot of that name";
+    EXPECT_EQ(desk.project().sensors[0].identity.serial, "another camera");
+    EXPECT_EQ(desk.project().robots[0].identity.serial, "another controller");
+    EXPECT_EQ(bits(desk.project()), bits(other));
+    for (const EventRecord& e : desk.events().value())
+        EXPECT_NE(e.text.english(), "devices connected") << "nothing was connected here";
+}
+
 }  // namespace
 }  // namespace seamwright

@@ -415,7 +415,14 @@ void GuidedPage::refresh_use() {
             parts << tr("%1° of %2 allowed").arg(number(v.worst_deg, 3), number(v.limit_deg, 3));
         if (std::isfinite(v.worst_px))
             parts << tr("%1 px of %2 allowed").arg(number(v.worst_px, 2), number(v.limit_px, 2));
-        if (v.poses == 0)
+        if (v.poses == 0 && !v.repeats.empty())
+            set_verdict(*verified_,
+                        tr("Not verified: %1 stands where %2 was taken, which is solved with, and agrees "
+                           "whatever the "
+                           "answer. Move the robot and take another.")
+                            .arg(text(v.repeats.front().first), text(v.repeats.front().second)),
+                        Tone::attention);
+        else if (v.poses == 0)
             set_verdict(
                 *verified_,
                 tr("Not verified: take one more pose that is not solved with, or keep one of the list back."),

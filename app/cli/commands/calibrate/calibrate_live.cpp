@@ -29,6 +29,10 @@ Expected<std::map<std::string, double>> settings_of(const CalibrationMethod& met
 }
 
 std::string verified_text(const Verification& v) {
+    if (v.poses == 0 && !v.repeats.empty())
+        return fmt::format(
+            "not verified: {} stands where {} was taken, which is solved with; move the robot\n",
+            v.repeats.front().first, v.repeats.front().second);
     if (v.poses == 0) return "";
     std::string parts;
     for (const auto& [worst, limit, unit] : {std::tuple{v.worst_mm, v.limit_mm, "mm"},

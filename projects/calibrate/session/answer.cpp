@@ -153,6 +153,29 @@ Expected<std::vector<SensorAnswer>> answers_of_chains(const CalibrationSession& 
     return answers;
 }
 
+// An answer is that of the devices it was captured with. One that was exchanged since has another serial number.
+Expected<void> check_same_devices(const CalibrationSession& session, const Project& project) {
+    const auto same = [&](const SessionCapture& c, const std::string& then, const std::string& now,
+                          const Text& device) -> Expected<void> {
+        if (then.empty() || now.empty() || then == now) return {};
+        return input_error(Text("{} was captured with serial number {}, {} is number {} now", c.taken->id,
+                                then, device, now),
+                           session.method().id, "leave such captures out, or begin anew");
+    };
+    for (const SessionCapture& c : session.state().captures) {
+        if (c.left_out) continue;
+        const std::string& of_chain = sensor_of_chain(*c.taken);
+        const std::string& id = of_chain.empty() ? session.sensor_id() : of_chain;
+        if (const SensorSetup* sensor = find_sensor(project, id))
+            SEAM_OK(same(c, c.taken->sensor_serial, sensor->identity.serial, Text("sensor {}", id)));
+        const RobotSetup* robot = find_robot(project, session.robot_id());
+        if (robot && session.method().robot)
+            SEAM_OK(
+                same(c, c.taken->robot_serial, robot->identity.serial, Text("robot {}", session.robot_id())));
+    }
+    return {};
+}
+
 Expected<Calibration> calibration_of_answer(const CalibrationSession& session, const Project& project,
                                             const SensorAnswer& answer) {
     const SensorSetup* sensor = find_sensor(project, answer.sensor_id);
@@ -175,6 +198,7 @@ Expected<std::vector<Calibration>> calibrations_of_session(const CalibrationSess
                                                            const Project& project) {
     const CalibrationSolution* solution = session.solution();
     if (!solution) return input_error("there is no solution yet", session.method().id, "solve first");
+    SEAM_OK(check_same_devices(session, project));
     std::vector<SensorAnswer> answers;
     if (const auto* found = std::get_if<SensorChains>(&solution->found)) {
         SEAM_TRY(auto chains, answers_of_chains(session, project, *found, solution->document));

@@ -16,7 +16,8 @@ Expected<Calibration> calibration_of_solution(const CalibrationMethod& method, c
 // The whole of it from a session, named with free ids, for this project's sensors and robot: one calibration,
 // or, of the one shot of a gripper, one for each sensor whose chain was solved, built on that sensor's own
 // calibration in use; its raw data and result hold its chain alone. Error (input): also a chain of a sensor
-// that the project does not know; there is no part of an answer.
+// that the project does not know, and a capture that was taken with a sensor or robot of another serial number than it has now;
+// there is no part of an answer.
 Expected<std::vector<Calibration>> calibrations_of_session(const CalibrationSession& session,
                                                            const Project& project);
 

@@ -28,6 +28,8 @@ json capture_json(const CalibrationCapture& c) {
             {"origin", c.origin},
             {"base_from_flange", c.base_from_flange ? pose_json(*c.base_from_flange) : json(nullptr)},
             {"picture", c.picture},
+            {"sensor_serial", c.sensor_serial},
+            {"robot_serial", c.robot_serial},
             {"entry", c.entry}};
 }
 
@@ -38,6 +40,11 @@ Expected<CalibrationCapture> parse_capture(const json& data, const std::string& 
         SEAM_TRY(auto text, json_string(data, key, where));
         *target = text;
     }
+    for (auto [key, target] :
+         {std::pair{"sensor_serial", &c.sensor_serial}, std::pair{"robot_serial", &c.robot_serial}})
+        if (data.contains(key)) {
+            SEAM_TRY(*target, json_string(data, key, where));
+        }
     if (const auto it = data.find("base_from_flange"); it != data.end() && !it->is_null()) {
         SEAM_TRY(auto pose, parse_pose(*it, json_path(where, "base_from_flange")));
         c.base_from_flange = pose;

@@ -159,6 +159,9 @@ ShotCaptures captures_of_shots(const CalibrationSession& session, const Project&
         std::filesystem::create_directories(file.parent_path(), code);
         if (!image.empty() && write_image_file(file, image))
             one->capture.picture = std::filesystem::relative(file, session.folder(), code).string();
+        one->capture.sensor_serial = sensor->identity.serial;
+        if (const RobotSetup* robot = find_robot(project, shot->robot_id))
+            one->capture.robot_serial = robot->identity.serial;
         taken.settings = std::move(one->settings);
         taken.captures.push_back(std::move(one->capture));
     }

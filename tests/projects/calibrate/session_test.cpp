@@ -58,6 +58,24 @@ TEST_F(Session, SphereFromFirstCaptureToUse) {
     EXPECT_GT(d.points, 60);
     EXPECT_LT(d.largest_mm, 0.15) << "against the cell's own mounting";
     EXPECT_GT(d.largest_mm, 0);
+    // A camera that was exchanged since is not the one that was calibrated.
+    CalibrationCapture other = *s.state().captures.front().taken;
+    other.sensor_serial = "SN 1";
+    other.id = s.free_id();
+    ASSERT_TRUE(s.add(other, false));
+    solve(s);
+    project_now.sensors[0].identity.serial = "SN 2";
+    const auto exchanged = calibrations_of_session(s, project_now);
+    ASSERT_FALSE(exchanged);
+    EXPECT_NE(exchanged.error().sentence().find("sensor A is number SN 2 now"), std::string::npos)
+        << exchanged.error().sentence();
+    EXPECT_EQ(open().state().captures.back().taken->sensor_serial, "SN 1") << "kept on disk";
+    project_now.sensors[0].identity.serial = "SN 1";
+    EXPECT_TRUE(calibrations_of_session(s, project_now));
+    project_now.sensors[0].identity.serial = "SN 2";
+    ASSERT_TRUE(s.leave_out(other.id, true));
+    solve(s);
+    EXPECT_TRUE(calibrations_of_session(s, project_now));
     ASSERT_TRUE(s.set_used_as({c->id}));
     EXPECT_EQ(open().used_as(), std::vector<std::string>{c->id});
     // Kept beside when the next one begins.

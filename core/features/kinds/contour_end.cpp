@@ -21,8 +21,8 @@
 // arc: the larger of the residuals' cubic part at the point, without what noise makes of it, and the
 // distance of the last point when the mean of the last three is more than 2.5 sigma / sqrt(3) off. d: a sensor that gives
 // means of neighbours (ProfileNoise::apart()) has at the end only such of points inwards, which draws the curve that way where
-// the contour slopes, and seems half as steep there (drawn as for twice that slope), the last one along the contour as well; and on
-// a bend every one lies k (m p)^2 / 6 on the inner side, of m points on either side. u: of the
+// the contour slopes; where more than four lines share their noise it seems half as steep there (drawn as for twice that slope), and
+// the last one is drawn along the contour as well; and on a bend every one lies k (m p)^2 / 6 on the inner side, of m points on either side. u: of the
 // rounding of z (contour_noise.h) what the residuals do not show, for on a level sheet all points are rounded alike; n the normal.
 // The end is spread evenly over the reach r from the last point on. A plain end: r = q = p, hence p^2 / 12; an interpolated
 // one is spread over p and over f p, narrower than evenly over both. Else the largest of
@@ -76,6 +76,7 @@ constexpr int kEndDoubtfulLines = 6;
 constexpr double kEndBeside = 3;  // pitches
 // Interpolated between points that were measured f pitches apart, n of them are worth n / (1.5 f).
 constexpr double kEndDependent = 1.5;
+constexpr double kEndShared = 3.8;                // lines: fewer share their noise by light
 constexpr double kEndAlone = 0.25;                // points on either side: less is no mean
 constexpr double kEndMisfit = 2.5;                // sigma of the last points' mean
 constexpr double kEndShares[] = {1, 0.65, 0.42};  // of fit_length_mm, where more is no arc
@@ -293,9 +294,10 @@ class ContourEnd final : public FeatureFinder {
         const double half = 0.5 * (sheets_.noise().apart() - 1);  // points on either side that a mean is of
         if (!(half > kEndAlone)) return 0;
         const Eigen::Vector3d weights = curve.cofactor * Eigen::Vector3d(1, s, s * s);
+        const double drawn = 0.5 + 0.5 * mean_for_certain();
         double off = 0;
         for (std::size_t i = 0; double(i) < half && i < fit_x_.size(); ++i) {
-            const double at = curve.along(point(i)), inwards = (half - double(i)) * pitch;
+            const double at = curve.along(point(i)), inwards = drawn * (half - double(i)) * pitch;
             const Eigen::Vector2d tangent = curve.tangent(at);
             off +=
                 weights.dot(Eigen::Vector3d(1, at, at * at)) * inwards * std::abs(tangent.x() * tangent.y());
@@ -303,11 +305,14 @@ class ContourEnd final : public FeatureFinder {
         return std::hypot(off, curve.curvature * half * half * pitch * pitch / 6);
     }
 
+    // 0 to 1. Light on a rough surface is shared by three or four lines as well, and draws nothing off.
+    double mean_for_certain() const { return std::clamp(sheets_.noise().apart() - kEndShared, 0.0, 1.0); }
+
     // The square of how far the last point is drawn along the contour: by neighbours inwards alone.
     double drawn_along(double pitch, const Eigen::Vector2d& tangent) const {
         const double half = 0.5 * (sheets_.noise().apart() - 1);
         if (!(half > kEndAlone)) return 0;
-        const double inwards = half * pitch * tangent.y() * tangent.y();
+        const double inwards = mean_for_certain() * half * pitch * tangent.y() * tangent.y();
         return inwards * inwards;
     }
 

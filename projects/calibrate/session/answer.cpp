@@ -164,8 +164,10 @@ Expected<void> check_same_devices(const CalibrationSession& session, const Proje
     };
     for (const SessionCapture& c : session.state().captures) {
         if (c.left_out) continue;
-        const std::string& of_chain = sensor_of_chain(*c.taken);
-        const std::string& id = of_chain.empty() ? session.sensor_id() : of_chain;
+        const bool chains = session.method().capture == CaptureKind::board_chain;
+        const std::string id = chains && find_sensor(project, sensor_of_chain(*c.taken))
+                                   ? sensor_of_chain(*c.taken)
+                                   : session.sensor_id();
         if (const SensorSetup* sensor = find_sensor(project, id))
             SEAM_OK(same(c, c.taken->sensor_serial, sensor->identity.serial, Text("sensor {}", id)));
         const RobotSetup* robot = find_robot(project, session.robot_id());

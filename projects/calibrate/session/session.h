@@ -31,9 +31,9 @@ struct CalibrationCapture {
     std::string taken_utc;                    // ISO 8601
     std::string origin;                       // "live", or the file it was read from
     std::optional<Pose> base_from_flange;     // as the robot reported it
-    std::string sensor_serial, robot_serial;  // of the devices that it was taken with; empty: not known
     nlohmann::json entry;                     // as the method's data hold it
     std::string picture;                      // image file, in the session's folder or absolute; empty: none
+    std::string sensor_serial, robot_serial;  // of the devices that it was taken with; empty: not known
 };
 
 struct SessionCapture {

@@ -21,10 +21,9 @@ namespace {
 constexpr int kSharedCellsOfOneSegment = 3;
 constexpr int kDirectionCells = 5;  // to either side, for the direction of the contour in a cell
 // A step that the heads see at different places.
-constexpr int kStepCells = 8, kFewestStepCells = 3;  // of a surface beside it, for its line
-constexpr double kStepSigma = 6;                     // of a shared cell's distance
-constexpr double kOnTheLine = 0.3;                   // of the step
-constexpr double kEvenPitches = 1.5;                 // within which a field's rims lie evenly about x = 0
+constexpr int kStepCells = 8, kFewestStepCells = 3;           // of a surface beside it, for its line
+constexpr double kStepSigma = 6;                              // of a shared cell's distance
+constexpr double kOnTheLine = 0.3;                            // of the step
 constexpr std::size_t kFewestOfTwo = 64, kFewestOfOne = 256;  // lines
 
 struct Point {
@@ -397,8 +396,8 @@ Expected<DoubleHeadProfile> merge_heads(const Profile& first, const Head& first_
     }
     // Two fields that lie evenly about their heads' x = 0 do so by chance together less than one.
     const auto lists = [&](std::size_t fewest) {
-        return std::pair(lists_every_line(first, kEvenPitches * a.pitch, fewest),
-                         lists_every_line(second, kEvenPitches * b.pitch, fewest));
+        return std::pair(lists_every_line(first, a.pitch, first_head.sigma_mm, fewest),
+                         lists_every_line(second, b.pitch, second_head.sigma_mm, fewest));
     };
     std::tie(a.every_line, b.every_line) = lists(kFewestOfTwo);
     if (!a.every_line || !b.every_line) std::tie(a.every_line, b.every_line) = lists(kFewestOfOne);

@@ -19,7 +19,8 @@
 // their least x and lie one after the other, each in order of x. Points without return and outliers are left
 // out, but for what says where the field ends: beyond its first and its last point the profile has as many lines without
 // return as the head that saw the point has beyond it (of both the fewer), and one more. A head whose profile does
-// not list its lines (lists_every_line(), no_return.h) adds none.
+// not list its lines (lists_every_line(), no_return.h; 64 lines are enough where both heads' lie evenly) adds none. Where the
+// field of one head ends amid what the other sees is not told.
 //
 // Steps. At the step of a lap the heads see the end of one sheet and the beginning of the other at different
 // places; in between they show two surfaces that may be nearer than kSameSurfaceMm. Where cells are more than six sigma apart,

@@ -11,6 +11,7 @@ namespace seamwright {
 namespace {
 
 constexpr int kFewestEmpty = 3;
+constexpr double kEvenPitches = 1.5, kEvenSigma = 3;  // within which a field's rims lie evenly about x = 0
 
 constexpr int kFewestPoints = 3;
 constexpr double kFarSpreads = 5, kFar_mm = 50, kAlone_mm = 0.2;
@@ -163,7 +164,7 @@ Text no_return_sentence(const std::vector<NoReturnCode>& codes) {
     return Text("{}: taken for lines without return", counts);
 }
 
-bool lists_every_line(const Profile& profile, double slack_mm, std::size_t fewest) {
+bool lists_every_line(const Profile& profile, double pitch_mm, double noise_mm, std::size_t fewest) {
     const std::size_t lines = std::min(profile.x_mm.size(), profile.z_mm.size());
     const auto empty = [&](std::size_t k) {
         return !std::isfinite(profile.x_mm[k]) || !std::isfinite(profile.z_mm[k]);
@@ -172,7 +173,8 @@ bool lists_every_line(const Profile& profile, double slack_mm, std::size_t fewes
     int count = 0;
     for (std::size_t k = 0; k < lines; ++k) count += empty(k);
     if (count >= kFewestEmpty || empty(0) || empty(lines - 1)) return true;
-    return lines >= fewest && std::abs(profile.x_mm[0] + profile.x_mm[lines - 1]) <= slack_mm;
+    return lines >= fewest && std::abs(profile.x_mm[0] + profile.x_mm[lines - 1]) <=
+                                  kEvenPitches * pitch_mm + kEvenSigma * noise_mm;
 }
 
 }  // namespace seamwright

@@ -32,8 +32,8 @@ int erase_no_returns(Profile& profile, const std::vector<double>& values);
 
 // Whether the profile lists its lines without return, so that its first and last line are the rims of the sensor's field: some
 // are in it (three, or one at its rim: a few holes may be anything), or at least `fewest` lines lie evenly about x = 0 within
-// `slack_mm`, as a full field does; fewer do so by chance. False: nobody knows.
-bool lists_every_line(const Profile& profile, double slack_mm, std::size_t fewest = 256);
+// one and a half pitches and three sigma of the noise, as a full field does; fewer do so by chance. False: nobody knows.
+bool lists_every_line(const Profile& profile, double pitch_mm, double noise_mm, std::size_t fewest = 256);
 
 // "213 points stand at z = -9999 ..." for a list that is not empty.
 Text no_return_sentence(const std::vector<NoReturnCode>& codes);

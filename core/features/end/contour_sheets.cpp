@@ -32,7 +32,6 @@ constexpr double kUpperHalf = 0.55;  // of the step, from above
 constexpr double kShadow = 0.6;      // of a step's height: so far a higher sheet may hide the lower one
 constexpr double kCoverSigma = 4;
 constexpr std::size_t kFragments = 4;  // pieces between a sheet and the one that hides it
-constexpr double kEvenPitches = 1.5;   // within which a field's sides lie evenly about x = 0
 constexpr double kLeastPitch_mm = 1e-12, kLeastAdvance_mm2 = 1e-24;  // the latter squared
 constexpr int kRimLines = 5;  // an end nearer to the field's rim is none
 
@@ -233,8 +232,7 @@ void ContourSheets::judge_ends(const Profile& profile, const SensorField& field)
     const int lines = static_cast<int>(std::min(profile.x_mm.size(), profile.z_mm.size()));
     const int n = static_cast<int>(all_x_.size());
     if (n == 0) return;
-    const bool told =
-        field.every_line || lists_every_line(profile, kEvenPitches * pitch_.along_x + 3 * noise_);
+    const bool told = field.every_line || lists_every_line(profile, pitch_.along_x, noise_);
     const double beside = kRimLines * pitch_.along_x;
     const auto at_rim = [&](int i) {
         return (told && (line_[i] < kRimLines || line_[i] >= lines - kRimLines)) ||

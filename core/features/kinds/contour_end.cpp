@@ -20,10 +20,11 @@
 // k h^2 / 2: beyond the last point the contour may bend on or go on straight. e, other shape than an
 // arc: the larger of the residuals' cubic part at the point, without what noise makes of it, and the
 // distance of the last point when the mean of the last three is more than 2.5 sigma / sqrt(3) off. d: a sensor that gives
-// means of neighbours (ProfileNoise::apart()) has at the end only such of points inwards, which draws the curve that way where
-// the contour slopes; where more than four lines share their noise it seems half as steep there (drawn as for twice that slope), and
-// the last one is drawn along the contour as well; and on a bend every one lies k (m p)^2 / 6 on the inner side, of m points on either side. u: of the
-// rounding of z (contour_noise.h) what the residuals do not show, for on a level sheet all points are rounded alike; n the normal.
+// means of neighbours (ProfileNoise::apart()), of m points on either side, has at the end only such of points inwards, which
+// draws the curve that way where the contour slopes; and on a bend every one lies k (m p)^2 / 6 on the inner side. Where more than
+// four lines share their noise the contour seems half as steep there (d as for twice that slope), and the last point is drawn
+// along it, m p n_x^2; of fewer that term is 0, light on a rough surface is shared as far. u: of the rounding of z
+// (contour_noise.h) what the residuals do not show, for on a level sheet all points are rounded alike; n the normal.
 // The end is spread evenly over the reach r from the last point on. A plain end: r = q = p, hence p^2 / 12; an interpolated
 // one is spread over p and over f p, narrower than evenly over both. Else the largest of
 //     - the last two steps, when longer than 1.5 p and than noise makes them: returns are missing there;

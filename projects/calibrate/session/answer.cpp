@@ -230,6 +230,7 @@ Expected<std::vector<Calibration>> calibrations_of_session(const CalibrationSess
 
 json verification_json(const Verification& v) {
     return {{"poses", v.poses},
+            {"repeats", v.repeats},
             {"confirmed", v.confirmed},
             {"worst_mm", number_json(v.worst_mm)},
             {"limit_mm", number_json(v.limit_mm)},

@@ -2,11 +2,11 @@
 // One guided calibration from its first capture to the calibration in use. It grows on disk with every
 // capture and every tick, so that a killed program loses nothing, and it needs no screen.
 //
-// Folder. FILE.seam.calibration/<sensor>-<method>/, or with -2, -3 where that is another robot's or another sensor's of a like
-// name, holds session.json (settings, order and marks of the captures, which calibration came of it), captures/<id>.json (one capture, never changed), captures/<id>.png
-// where a picture was taken, and result.json (the newest solution and what it was solved from). Each file is
-// written whole or not at all, a capture before the list that names it. begin_anew() keeps the finished
-// session beside, under its time.
+// Folder. FILE.seam.calibration/<sensor>-<method>/, or with -2, -3 where that is another robot's or another sensor's of
+// a like name, holds session.json (settings, order and marks of the captures, which calibration came of it),
+// captures/<id>.json (one capture, never changed), captures/<id>.png where a picture was taken, and result.json (the
+// newest solution and what it was solved from). Each file is written whole or not at all, a capture before the list
+// that names it. begin_anew() keeps the finished session beside, under its time.
 //
 // Marks. `left_out`: the engineer took the pose out; its residual is still given. `verification`: never
 // solved with; it judges the solution, see verify().
@@ -70,8 +70,9 @@ struct PoseRow {
 
 // Residual of the poses that were not solved with, against what the solution promises.
 struct Verification {
-    int poses = 0;  // that judge
-    // Kept back, but the robot stands where one was solved with: {kept back, solved with}. It judges nothing.
+    int poses = 0;  // that can confirm
+    // Kept back, but the robot stands within 0.5 mm and 0.1 degree of where one was solved with: {kept back, solved with}. It
+    // confirms nothing; that it disagrees still counts.
     std::vector<std::pair<std::string, std::string>> repeats;
     bool confirmed = false;
     double worst_mm = kNone, worst_deg = kNone, worst_px = kNone;  // NaN: the method has none

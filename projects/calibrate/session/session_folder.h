@@ -13,7 +13,8 @@ namespace seamwright {
 std::string file_name(const std::string& text);
 
 // Several names make one name of a folder ("K ä", "K ö"), and one sensor is calibrated on several robots: each has a folder of
-// its own, the second ends in -2. The folder may not be there yet.
+// its own, the second ends in -2: a session that is in the folder, of another sensor or captured with one of `other_robots`, is
+// passed over. The folder may not be there yet.
 std::filesystem::path session_folder(const std::filesystem::path& project_file, const MethodId& method,
                                      const SensorId& sensor, const std::vector<std::string>& other_robots);
 

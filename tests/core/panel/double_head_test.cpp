@@ -225,6 +225,78 @@ TEST(DoubleHead, TellsAWrongRelationAndRefusesBeyondTheLimit) {
     EXPECT_EQ(with({0, 1, 0}).status, DoubleHeadStatus::not_coplanar);
 }
 
+// A level sheet from -12 to `end` seen by two upright heads with fields of +-20 mm.
+Profile level(double end, int lines, bool every_line) {
+    Profile p;
+    for (int i = 0; i < lines; ++i) {
+        const double x = -20 + 40. / lines * (i + 0.5);
+        const bool there = x > -12 && x < end;
+        if (!there && !every_line) continue;
+        p.x_mm.push_back(x);
+        p.z_mm.push_back(there ? 0 : std::numeric_limits<double>::quiet_NaN());
+        p.segment.push_back(there ? 0 : kOutlier);
+    }
+    return p;
+}
+
+TEST(DoubleHead, TellsWhereItsFieldEnds) {
+    const auto empty_lines = [](const DoubleHeadProfile& m) {
+        const auto& z = m.profile.z_mm;
+        const auto returned = [](double v) { return std::isfinite(v); };
+        return std::pair(std::find_if(z.begin(), z.end(), returned) - z.begin(),
+                         std::find_if(z.rbegin(), z.rend(), returned) - z.rbegin());
+    };
+    // 8 mm on the left; the sheet leaves the field on the right. Steps of 0.1 and 0.2 mm.
+    const Profile fine = level(99, 400, true), coarse = level(99, 200, true);
+    for (const auto& [first, second] : {std::pair(fine, coarse), std::pair(coarse, fine)}) {
+        const auto m = merge_heads(first, {}, second, {});
+        ASSERT_TRUE(m && m->status == DoubleHeadStatus::ok);
+        EXPECT_EQ(empty_lines(*m), (std::pair<std::ptrdiff_t, std::ptrdiff_t>(41, 1)));
+    }
+    // The other way round, and of a head that is turned over.
+    const Pose over = make_pose(rotation_exp({0, 0, kPi}), {0, 0, 0});
+    const auto turned = merge_heads(fine, {over}, coarse, {over});
+    ASSERT_TRUE(turned && turned->status == DoubleHeadStatus::ok);
+    EXPECT_EQ(empty_lines(*turned), (std::pair<std::ptrdiff_t, std::ptrdiff_t>(1, 41)));
+    const auto unknown = merge_heads(level(5, 400, false), {}, level(5, 200, false), {});
+    ASSERT_TRUE(unknown && unknown->status == DoubleHeadStatus::ok);
+    EXPECT_EQ(empty_lines(*unknown), (std::pair<std::ptrdiff_t, std::ptrdiff_t>(0, 0)));
+}
+
+// The first head sees the upper sheet 0.6 mm farther than the second, which there sees the lower one already.
+TEST(DoubleHead, AStepIsDividedWhereEachHeadSeesIt) {
+    const auto lap = [](double step_at) {
+        Profile p;
+        for (double x = -20 + 0.05; x < 20; x += 0.1) {
+            p.x_mm.push_back(x);
+            p.z_mm.push_back(x < step_at ? 0 : -0.7);
+            p.segment.push_back(0);
+        }
+        return p;
+    };
+    const Head head{Pose::Identity(), 0.02};
+    for (const bool exchanged : {false, true}) {
+        const Profile a = lap(exchanged ? -0.6 : 0), b = lap(exchanged ? 0 : -0.6);
+        const auto m = merge_heads(a, head, b, head);
+        ASSERT_TRUE(m);
+        ASSERT_EQ(m->status, DoubleHeadStatus::ok) << m->message.english();
+        EXPECT_LT(m->disagreement_mm, 1e-9) << "different surfaces are not compared";
+        double last_upper = -99, first_lower = 99;
+        for (std::size_t i = 0; i < m->profile.size(); ++i) {
+            const double x = m->profile.x_mm[i], z = m->profile.z_mm[i];
+            if (!std::isfinite(z)) continue;
+            EXPECT_TRUE(std::abs(z) < 1e-9 || std::abs(z + 0.7) < 1e-9) << "a mean of both at " << x;
+            EXPECT_EQ(m->profile.segment[i], z > -0.35 ? 0 : 1) << x;
+            if (z > -0.35)
+                last_upper = std::max(last_upper, x);
+            else
+                first_lower = std::min(first_lower, x);
+        }
+        EXPECT_NEAR(last_upper, -0.05, 0.051);
+        EXPECT_NEAR(first_lower, -0.55, 0.051);
+    }
+}
+
 TEST(DoubleHead, RefusesHeadsThatShareTooLittle) {
     View a = left_view(), b = right_view();
     a.panel_to = 3;

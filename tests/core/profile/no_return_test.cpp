@@ -80,5 +80,31 @@ TEST(NoReturn, HeightsAreNoCodes) {
     EXPECT_TRUE(find_no_return_codes(drawn).empty());
 }
 
+TEST(ListsEveryLine, ByItsEmptyLinesOrByAFieldThatLiesEvenly) {
+    const auto grid = [](int lines, double from) {
+        Profile p;
+        for (int i = 0; i < lines; ++i) {
+            p.x_mm.push_back(from + 0.1 * i);
+            p.z_mm.push_back(0);
+        }
+        return p;
+    };
+    const double none = std::nan("");
+    EXPECT_FALSE(lists_every_line({}, 0.1, 0.01));
+    EXPECT_TRUE(lists_every_line(grid(301, -15), 0.1, 0.01));
+    EXPECT_TRUE(lists_every_line(grid(301, -14.93), 0.1, 0.01)) << "within one and a half pitches";
+    EXPECT_FALSE(lists_every_line(grid(301, -14.8), 0.1, 0.01));
+    EXPECT_FALSE(lists_every_line(grid(101, -5), 0.1, 0.01)) << "a short one does by chance";
+    EXPECT_TRUE(lists_every_line(grid(101, -5), 0.1, 0.01, 64));
+    Profile p = grid(301, -10);
+    p.z_mm[100] = p.z_mm[101] = none;
+    EXPECT_FALSE(lists_every_line(p, 0.1, 0.01)) << "two holes may be anything";
+    p.z_mm[200] = none;
+    EXPECT_TRUE(lists_every_line(p, 0.1, 0.01));
+    Profile rim = grid(301, -10);
+    rim.x_mm.back() = rim.z_mm.back() = none;
+    EXPECT_TRUE(lists_every_line(rim, 0.1, 0.01));
+}
+
 }  // namespace
 }  // namespace seamwright

@@ -72,6 +72,8 @@ TEST_F(Session, SphereFromFirstCaptureToUse) {
     EXPECT_EQ(open().state().captures.back().taken->sensor_serial, "SN 1") << "kept on disk";
     project_now.sensors[0].identity.serial = "SN 1";
     EXPECT_TRUE(calibrations_of_session(s, project_now));
+    project_now.robots[0].identity.serial = "KR 2";
+    EXPECT_TRUE(calibrations_of_session(s, project_now)) << "nobody knows with which it was captured";
     project_now.sensors[0].identity.serial = "SN 2";
     ASSERT_TRUE(s.leave_out(other.id, true));
     solve(s);

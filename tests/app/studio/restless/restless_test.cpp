@@ -25,7 +25,6 @@ class Restless : public Furniture, public testing::WithParamInterface<unsigned> 
     std::mt19937 random;
     QTimer dismisser;
     int project = 0;
-    std::vector<std::string> deeds;  // for the message of a failure
 
     Desk& desk() { return studio->desk(); }
     StationWorker& worker() { return desk().worker(); }
@@ -63,30 +62,21 @@ class Restless : public Furniture, public testing::WithParamInterface<unsigned> 
         if (r.driver.empty()) r.driver = draw(2) ? "simulated" : "simulated-gripper";
         (void)desk().add(r);
     }
+    template <class Setup, class Drivers>
+    void change(const std::vector<Setup>& all, const Drivers& drivers) {
+        if (all.empty()) return;
+        Setup setup = all[static_cast<std::size_t>(draw(static_cast<int>(all.size())))];
+        if (draw(3) == 0)
+            setup.driver = drivers[static_cast<std::size_t>(draw(static_cast<int>(drivers.size())))].name;
+        else
+            setup.settings["seed"] = draw(5);
+        (void)desk().edit(setup);
+    }
     void change_device() {
-        if (draw(2)) {
-            const int at = index_of<SensorSetup>(desk().project(), sensor());
-            if (at < 0) return;
-            SensorSetup s = desk().project().sensors[static_cast<std::size_t>(at)];
-            if (draw(3) == 0) {
-                const auto& drivers = sensor_drivers();
-                s.driver = drivers[static_cast<std::size_t>(draw(static_cast<int>(drivers.size())))].name;
-            } else {
-                s.settings["seed"] = draw(5);
-            }
-            (void)desk().edit(s);
-        } else {
-            const int at = index_of<RobotSetup>(desk().project(), robot());
-            if (at < 0) return;
-            RobotSetup r = desk().project().robots[static_cast<std::size_t>(at)];
-            if (draw(3) == 0) {
-                const auto& drivers = robot_drivers();
-                r.driver = drivers[static_cast<std::size_t>(draw(static_cast<int>(drivers.size())))].name;
-            } else {
-                r.settings["seed"] = draw(5);
-            }
-            (void)desk().edit(r);
-        }
+        if (draw(2))
+            change(desk().project().sensors, sensor_drivers());
+        else
+            change(desk().project().robots, robot_drivers());
     }
     void change_spot() {
         const Spot* found = find_spot(desk().project(), spot());
@@ -225,7 +215,7 @@ TEST_P(Restless, NothingEndsTheDeskOrLetsItWait) {
             if ((at -= d.weight) < 0) break;
         }
         watch.during(deed->name);
-        std::cerr << deed->name << ' ';
+        std::cerr << deed->name << ' ';  // what was done before a crash
         deed->run();
         if (const int rest = draw(5); rest == 0)
             QTest::qWait(draw(300));
@@ -240,7 +230,7 @@ TEST_P(Restless, NothingEndsTheDeskOrLetsItWait) {
             return !worker().busy();
         },
         60000));
-    // Whatever was left, it measures again.
+    // Whatever was left, the demo connects again.
     ASSERT_TRUE(studio->open_demo(true));
     ASSERT_TRUE(QTest::qWaitFor([&] { return desk().station().connected && !worker().busy(); }, 60000));
     watch.during("close");

@@ -3,7 +3,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "texts.h"
+#include "german_texts.h"
 
 namespace seamwright {
 

@@ -1,15 +1,13 @@
 #include "core/cloud/coarse.h"
 
-#include <pcl/features/fpfh.h>
-#include <pcl/kdtree/kdtree_flann.h>
-#include <pcl/point_types.h>
-
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "core/cloud/alike_object.h"
 #include "core/cloud/refine.h"
 #include "core/geometry/decompositions.h"
+#include "core/loaded_object.h"
 
 namespace seamwright {
 namespace {
@@ -21,26 +19,6 @@ constexpr double kOnLine = 1e-4;  // of variances: a triangle whose height is 1 
 constexpr std::size_t kPartPoints = 3000;
 constexpr double kLeastSpacing = 1e-3;                     // of the scan's size
 constexpr double kSameTurn_rad = 0.15, kSamePlace = 0.08;  // of the scan's size: two poses that are one start
-
-using Features = pcl::PointCloud<pcl::FPFHSignature33>;
-
-Features::Ptr features_of(const Cloud& cloud, double radius_mm) {
-    const pcl::PointCloud<pcl::PointNormal>::Ptr points(new pcl::PointCloud<pcl::PointNormal>);
-    const Eigen::Vector3d middle = cloud.box().center();
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-        pcl::PointNormal p;
-        p.getVector3fMap() = (cloud.points[i] - middle).cast<float>();
-        p.getNormalVector3fMap() = cloud.normals[i];
-        points->push_back(p);
-    }
-    pcl::FPFHEstimation<pcl::PointNormal, pcl::PointNormal, pcl::FPFHSignature33> estimation;
-    estimation.setInputCloud(points);
-    estimation.setInputNormals(points);
-    estimation.setRadiusSearch(radius_mm);
-    const Features::Ptr features(new Features);
-    estimation.compute(*features);
-    return features;
-}
 
 struct Scored {
     Pose pose;
@@ -85,26 +63,17 @@ std::vector<Pose> axis_poses(const Cloud& scan, const Cloud& part) {
 }
 
 // Poses of triples that look alike and are as far apart.
-std::vector<Scored> consensus(const Cloud& scan, const Cloud& part, const Surface& surface,
-                              const Cloud& probe, double spacing, const CoarseOptions& options) {
-    const Features::Ptr ours = features_of(scan, 5 * spacing), theirs = features_of(part, 5 * spacing);
-    pcl::KdTreeFLANN<pcl::FPFHSignature33> tree;
-    const auto whole = [](const pcl::FPFHSignature33& f) {
-        return std::all_of(std::begin(f.histogram), std::end(f.histogram),
-                           [](float v) { return std::isfinite(v); });
-    };
-    if (!std::all_of(theirs->begin(), theirs->end(), whole)) return {};
-    tree.setInputCloud(theirs);
-    constexpr int kAlike = 8;
-    std::vector<std::vector<int>> alike(scan.size());
-    for (std::size_t i = 0; i < scan.size(); ++i) {
-        std::vector<float> squared;
-        if (whole((*ours)[i])) tree.nearestKSearch((*ours)[i], kAlike, alike[i], squared);
-    }
+Expected<std::vector<Scored>> consensus(const Cloud& scan, const Cloud& part, const Surface& surface,
+                                        const Cloud& probe, double spacing, const CoarseOptions& options) {
+    constexpr int kMostAlike = 8;
+    SEAM_TRY(const auto find_alike, loaded_function<decltype(seamwright_alike)>(kAlike, "seamwright_alike"));
+    std::vector<std::vector<int>> alike;
+    find_alike(scan, part, 5 * spacing, kMostAlike, alike);
+    std::vector<Scored> found;
+    if (alike.empty()) return found;
     std::mt19937_64 random(options.seed);
     std::uniform_int_distribution<std::size_t> any(0, scan.size() - 1);
     const double size = scan.box().diagonal().norm(), least = kLeastSide * size;
-    std::vector<Scored> found;
     for (int trial = 0, tested = 0; trial < 60 * options.trials && tested < options.trials; ++trial) {
         std::size_t at[3];
         Eigen::Vector3d p[3], q[3];
@@ -156,7 +125,8 @@ Expected<Pose> pose_of_pairs(const std::vector<Eigen::Vector3d>& from,
     return make_pose(turn, b - turn * a);
 }
 
-std::vector<Pose> coarse_poses(const Cloud& cloud, const Surface& surface, const CoarseOptions& options) {
+Expected<std::vector<Pose>> coarse_poses(const Cloud& cloud, const Surface& surface,
+                                         const CoarseOptions& options) {
     std::vector<Pose> out;
     if (cloud.size() < 20 || surface.empty()) return out;
     const double size = cloud.box().diagonal().norm();
@@ -170,7 +140,8 @@ std::vector<Pose> coarse_poses(const Cloud& cloud, const Surface& surface, const
     for (int side = 0; side < (cloud.has_towards() ? 1 : 2); ++side) {
         if (side == 1)
             for (auto& n : scan.normals) n = -n;
-        for (Scored& s : consensus(scan, part, surface, probe, spacing, options)) found.push_back(s);
+        SEAM_TRY(const auto alike, consensus(scan, part, surface, probe, spacing, options));
+        found.insert(found.end(), alike.begin(), alike.end());
     }
     for (const Pose& p : axis_poses(scan, part)) found.push_back({p, 1});  // always looked at: they are few
     std::stable_sort(found.begin(), found.end(),

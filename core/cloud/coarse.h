@@ -18,8 +18,9 @@ struct CoarseOptions {
     std::size_t most = 16;  // poses
 };
 
-// `cloud` with normals, thinned to some thousand points. Empty: nothing to go by.
-std::vector<Pose> coarse_poses(const Cloud& cloud, const Surface& surface, const CoarseOptions& options);
+// `cloud` with normals, thinned to some thousand points. Empty: nothing to go by. Error (file): as of loaded_object.h.
+Expected<std::vector<Pose>> coarse_poses(const Cloud& cloud, const Surface& surface,
+                                         const CoarseOptions& options);
 
 // The rigid motion that brings `from` onto `to` with the least squares of distances (Kabsch); three points or more,
 // not on a line (their triangle's height at least 1 % of its longest side). Error (input) otherwise.

@@ -1,5 +1,7 @@
-// What is asked of a point's nearest neighbours: PCL's kd-tree, single precision about the cloud's middle.
+// What is asked of a point's nearest neighbours: PCL's kd-tree, single precision about the cloud's middle. Compiled from its headers:
+// its library pulls a hundred others along at every start.
 
+#define PCL_NO_PRECOMPILE
 #include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/point_types.h>
 

@@ -6,7 +6,8 @@
 #include <system_error>
 
 #include "core/geometry/pose.h"
-#include "devices/drawing/shape_reader.h"
+#include "core/loaded_object.h"
+#include "devices/drawing/shapes_object.h"
 #include "devices/exchange/files.h"
 #include "devices/simulated/scene/mesh_file.h"
 
@@ -70,6 +71,15 @@ Expected<Drawing> drawing_of(Expected<TriangleMesh> mesh, const std::string& nam
     return drawing;
 }
 
+Expected<Drawing> read_shapes(const char* reader, std::span<const std::byte> bytes, const std::string& name,
+                              const DrawingOptions& options) {
+    SEAM_TRY(const auto read,
+             loaded_function<decltype(drawing::seamwright_read_step)>(drawing::kShapes, reader));
+    Expected<Drawing> drawing;
+    read(bytes, name, options, drawing);
+    return drawing;
+}
+
 // The chain's end or beginning: where it is, and where it goes from there.
 struct Tip {
     Eigen::Vector3d place, out;
@@ -82,8 +92,10 @@ Expected<Drawing> read_drawing(std::span<const std::byte> bytes, const std::stri
     SEAM_OK(check(options));
     if (bytes.empty()) return file_error("is empty", name);
     const std::string ending = ending_of(name);
-    if (ending == ".step" || ending == ".stp") return drawing::read_step(bytes, name, options);
-    if (ending == ".iges" || ending == ".igs") return drawing::read_iges(bytes, name, options);
+    if (ending == ".step" || ending == ".stp")
+        return read_shapes("seamwright_read_step", bytes, name, options);
+    if (ending == ".iges" || ending == ".igs")
+        return read_shapes("seamwright_read_iges", bytes, name, options);
     if (ending == ".ply") return drawing_of(mesh_from_ply(bytes, name), name, options);
     return file_error("is neither .step, .stp, .iges, .igs nor .ply", name,
                       "a mesh of another kind is kept as PLY");

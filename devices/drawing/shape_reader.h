@@ -1,5 +1,5 @@
 #pragma once
-// STEP and IGES by OpenCASCADE; nobody but drawing.cpp calls it.
+// STEP and IGES by OpenCASCADE; nobody but shapes_object.cpp calls it.
 
 #include "devices/drawing/drawing.h"
 

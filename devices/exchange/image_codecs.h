@@ -22,12 +22,12 @@ Expected<cv::Mat> decode_image(const std::string& bytes);
 Expected<std::vector<unsigned char>> encode_image(const std::filesystem::path& extension,
                                                   const cv::Mat& image);
 
-// What the shared object seamwright_codecs.so, which stands beside the program, hands out by these two names.
-using DecodeImage = void (*)(const std::string& bytes, cv::Mat& image);
-using EncodeImage = bool (*)(const std::string& extension, const cv::Mat& image,
+// What seamwright_codecs.so (core/loaded_object.h) hands out.
+extern "C" {
+void seamwright_decode_image(const std::string& bytes, cv::Mat& image);
+// False: there is no such format.
+bool seamwright_encode_image(const std::string& extension, const cv::Mat& image,
                              std::vector<unsigned char>& bytes);
-inline constexpr const char* kCodecsFile = "seamwright_codecs.so";
-inline constexpr const char* kDecodeImage = "seamwright_decode_image";
-inline constexpr const char* kEncodeImage = "seamwright_encode_image";
+}
 
 }  // namespace seamwright

@@ -1,15 +1,6 @@
 #include "devices/simulated/scene/mesh_file.h"
 
 #include <fmt/format.h>
-#include <vtkCallbackCommand.h>
-#include <vtkCellArray.h>
-#include <vtkCommand.h>
-#include <vtkExecutive.h>
-#include <vtkNew.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkSTLReader.h>
-#include <vtkTriangleFilter.h>
 
 #include <algorithm>
 #include <array>
@@ -22,28 +13,15 @@
 #include <tuple>
 
 #include "core/geometry/welded.h"
+#include "core/loaded_object.h"
 #include "devices/exchange/files.h"
 #include "devices/simulated/scene/polygon_file.h"
+#include "devices/simulated/scene/surfaces_object.h"
 
 namespace seamwright {
 namespace {
 
 constexpr std::size_t kLongestFile = std::size_t{4} << 30;  // bytes, of text or binary
-
-// Counts the reader's errors; with an observer VTK prints none.
-struct Watch {
-    vtkNew<vtkCallbackCommand> command;
-    int errors = 0;
-    Watch() {
-        command->SetClientData(this);
-        command->SetCallback(
-            [](vtkObject*, unsigned long, void* self, void*) { ++static_cast<Watch*>(self)->errors; });
-    }
-    void on(vtkObject* object) {
-        object->AddObserver(vtkCommand::ErrorEvent, command);
-        object->AddObserver(vtkCommand::WarningEvent, command);
-    }
-};
 
 // Two triangles that turn alike run along their common side in opposite directions.
 void turn_alike(TriangleMesh& mesh) {
@@ -116,38 +94,15 @@ void turn_alike(TriangleMesh& mesh) {
     }
 }
 
-Expected<TriangleMesh> triangulated(vtkPolyData* surface, const std::string& where) {
-    Watch watch;
-    vtkNew<vtkTriangleFilter> triangles;
-    watch.on(triangles);
-    watch.on(triangles->GetExecutive());
-    triangles->SetInputData(surface);
-    triangles->PassLinesOff();
-    triangles->PassVertsOff();
-    triangles->Update();
-    const vtkPolyData* none = nullptr;
-    vtkPolyData* data = triangles->GetOutput();
-    if (watch.errors > 0 || data == none || data->GetNumberOfPolys() == 0) {
-        return file_error("holds no readable triangles", where);
-    }
-    TriangleMesh mesh;
-    mesh.vertices.resize(static_cast<std::size_t>(data->GetNumberOfPoints()));
-    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-        data->GetPoint(static_cast<vtkIdType>(i), mesh.vertices[i].data());
-        if (!mesh.vertices[i].allFinite()) return file_error("holds a vertex that is not finite", where);
-    }
-    vtkNew<vtkIdList> cell;
-    auto* polygons = data->GetPolys();
-    for (polygons->InitTraversal(); polygons->GetNextCell(cell);) {
-        if (cell->GetNumberOfIds() != 3) continue;
-        Eigen::Vector3i t;
-        for (int k = 0; k < 3; ++k) t[k] = static_cast<int>(cell->GetId(k));
-        const auto& v = mesh.vertices;
-        const auto& a = v[static_cast<std::size_t>(t[0])];
-        const Eigen::Vector3d n =
-            (v[static_cast<std::size_t>(t[1])] - a).cross(v[static_cast<std::size_t>(t[2])] - a);
-        if (n.norm() > 0) mesh.triangles.push_back(t);
-    }
+// Without the triangles that have no area; turned as load_mesh() says.
+Expected<TriangleMesh> cleaned(TriangleMesh mesh, const std::string& where) {
+    const auto& v = mesh.vertices;
+    if (!std::all_of(v.begin(), v.end(), [](const Eigen::Vector3d& p) { return p.allFinite(); }))
+        return file_error("holds a vertex that is not finite", where);
+    std::erase_if(mesh.triangles, [&](const Eigen::Vector3i& t) {
+        const auto at = [&](int k) { return v[static_cast<std::size_t>(t[k])]; };
+        return !((at(1) - at(0)).cross(at(2) - at(0)).norm() > 0);
+    });
     if (mesh.triangles.empty()) return file_error("holds only degenerate triangles", where);
     turn_alike(mesh);
     return mesh;
@@ -200,29 +155,26 @@ Expected<void> check_stl_is_whole(const std::filesystem::path& path) {
 
 Expected<TriangleMesh> read_stl(const std::filesystem::path& path) {
     SEAM_OK(check_stl_is_whole(path));
-    Watch watch;
-    vtkNew<vtkSTLReader> reader;
-    watch.on(reader);
-    watch.on(reader->GetExecutive());
-    reader->SetFileName(path.c_str());
-    reader->Update();
-    if (watch.errors > 0) return file_error("holds no readable triangles", path.string());
-    return triangulated(reader->GetOutput(), path.string());
+    SEAM_TRY(const auto read,
+             loaded_function<decltype(seamwright_read_stl)>(kSurfaces, "seamwright_read_stl"));
+    TriangleMesh mesh;
+    if (!read(path.string(), mesh)) return file_error("holds no readable triangles", path.string());
+    return cleaned(std::move(mesh), path.string());
 }
 
 Expected<TriangleMesh> mesh_of(const PolygonSurface& surface, const std::string& where) {
-    vtkNew<vtkPolyData> data;
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    for (const Eigen::Vector3d& p : surface.points) points->InsertNextPoint(p.data());
-    vtkNew<vtkCellArray> polygons;
-    for (const auto& face : surface.faces) {
-        polygons->InsertNextCell(static_cast<int>(face.size()));
-        for (const std::int32_t corner : face) polygons->InsertCellPoint(corner);
+    TriangleMesh mesh;
+    const auto is_triangle = [](const std::vector<std::int32_t>& face) { return face.size() == 3; };
+    if (std::all_of(surface.faces.begin(), surface.faces.end(), is_triangle)) {
+        if (surface.faces.empty()) return file_error("holds no readable triangles", where);
+        mesh.vertices = surface.points;
+        for (const auto& face : surface.faces) mesh.triangles.emplace_back(face[0], face[1], face[2]);
+    } else {
+        SEAM_TRY(const auto triangulate,
+                 loaded_function<decltype(seamwright_triangulate)>(kSurfaces, "seamwright_triangulate"));
+        if (!triangulate(surface, mesh)) return file_error("holds no readable triangles", where);
     }
-    data->SetPoints(points);
-    data->SetPolys(polygons);
-    return triangulated(data, where);
+    return cleaned(std::move(mesh), where);
 }
 
 }  // namespace

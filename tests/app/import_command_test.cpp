@@ -115,7 +115,7 @@ TEST_F(Import, OurOwnExportsComeBackInEveryForm) {
 }
 
 // The program alone, without the objects that stand beside it.
-TEST_F(Import, WithoutItsCodecsAnImageIsRefusedInOneSentence) {
+TEST_F(Import, WhatStandsBesideTheProgramIsAskedForInOneSentence) {
     const auto alone = folder / "alone" / "seamwright", images = folder / "images";
     std::filesystem::create_directories(alone.parent_path());
     std::filesystem::create_directories(images);
@@ -125,7 +125,20 @@ TEST_F(Import, WithoutItsCodecsAnImageIsRefusedInOneSentence) {
     const ProgramResult r = run_program(look, folder, alone);
     EXPECT_EQ(r.exit_code, 1);
     EXPECT_THAT(r.out + r.err, HasSubstr("put seamwright_codecs.so beside the program"));
-    EXPECT_THAT(run_program(look, folder).out, Not(HasSubstr("beside")));
+    EXPECT_THAT(run_program(look, folder).out, Not(HasSubstr("beside the program")));
+    const auto step = folder / "a.step", stl = folder / "a.stl";
+    std::ofstream(step) << "ISO-10303-21;\nEND-ISO-10303-21;\n";
+    std::ofstream(stl)
+        << "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 99 0 0\nvertex 0 99 0\n"
+           "endloop\nendfacet\nendsolid a\n";
+    for (const auto& [file, object] :
+         {std::pair(step, "seamwright_shapes.so"), {stl, "seamwright_surfaces.so"}}) {
+        const ProgramResult without = run_program({"drawing", file.string()}, folder, alone);
+        EXPECT_EQ(without.exit_code, 3) << file;
+        EXPECT_THAT(without.err, HasSubstr(std::string("put ") + object + " beside the program"));
+        EXPECT_THAT(run_program({"drawing", file.string()}, folder).err,
+                    Not(HasSubstr("beside the program")));
+    }
 }
 
 TEST_F(Import, LookSaysWhatWasUnderstood) {

@@ -44,7 +44,13 @@ std::string without_id(json entry) {
 
 Expected<ReadCaptures> read_capture_file(const CalibrationMethod& method, const json& settings,
                                          const std::filesystem::path& path) {
-    SEAM_TRY(auto data, read_json_file(path));
+    auto text = read_json_file(path);
+    if (!text) {
+        Error error = text.error();
+        if (error.mend.empty()) error.mend = "choose a JSON file of this method";
+        return tl::unexpected(std::move(error));
+    }
+    json& data = *text;
     if (!data.is_object()) return input_error("the data is not a JSON object", path.string());
     const json file = data;
     ReadCaptures read;
@@ -75,9 +81,14 @@ Expected<ReadCaptures> read_capture_file(const CalibrationMethod& method, const 
             SEAM_TRY(auto id, entry_id(entry, i, json_path(method.entries, i)));
             if (!single || entry.contains("id")) c.id = id;
             if (entry.contains("base_from_flange") && !entry["base_from_flange"].is_null()) {
-                SEAM_TRY(auto pose, parse_pose(entry["base_from_flange"],
-                                               json_path(json_path(method.entries, i), "base_from_flange")));
-                c.base_from_flange = pose;
+                const auto pose = parse_pose(entry["base_from_flange"],
+                                             json_path(json_path(method.entries, i), "base_from_flange"));
+                if (!pose) {
+                    Error error = pose.error();
+                    error.within(path.string());
+                    return tl::unexpected(std::move(error));
+                }
+                c.base_from_flange = *pose;
             }
         }
         c.entry = entry;

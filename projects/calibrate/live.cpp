@@ -225,8 +225,11 @@ Expected<LiveCalibration> calibrate_live(Station& station, const CalibrationMeth
     if (!link) return device_error("the robot is not connected", Text("robot {}", robot), "connect it");
     std::vector<std::string> robots;
     for (const RobotSetup& r : station.project().robots) robots.push_back(r.id);
-    SEAM_TRY(auto session, CalibrationSession::open(station.file().path(), MethodId(method.id),
-                                                    SensorId(options.sensor_id), RobotId(robot), robots));
+    std::vector<std::string> sensors;
+    for (const SensorSetup& s : station.project().sensors) sensors.push_back(s.id);
+    SEAM_TRY(auto session,
+             CalibrationSession::open(station.file().path(), MethodId(method.id), SensorId(options.sensor_id),
+                                      RobotId(robot), robots, sensors));
     if (options.anew || session.stage() == SessionStage::used) SEAM_OK(session.begin_anew());
     for (const auto& [name, value] : options.settings) SEAM_OK(session.set(name, value));
     std::optional<ShownTarget> shown;

@@ -44,7 +44,7 @@
     </message>
     <message>
         <source>Regions</source>
-        <translation>Bereiche</translation>
+        <translation>Korrekturbereiche</translation>
     </message>
     <message>
         <source>Prove</source>
@@ -91,7 +91,7 @@
     </message>
     <message>
         <source>region</source>
-        <translation>Bereich</translation>
+        <translation>Korrekturbereich</translation>
     </message>
     <message>
         <source>sensor</source>
@@ -870,7 +870,7 @@
     </message>
     <message>
         <source>no stripe</source>
-        <translation>keine Laserlinie</translation>
+        <translation>kein Streifen</translation>
     </message>
     <message>
         <source>no calibration</source>
@@ -2751,6 +2751,10 @@
         <source>A sensor that delivers images needs this first: %1.</source>
         <translation>Ein Sensor, der Bilder liefert, braucht zuerst: %1.</translation>
     </message>
+    <message>
+        <source>Kept as a record: nothing is measured with it.</source>
+        <translation>Nur aufbewahrt: gemessen wird damit nicht.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::CalibrationDesk</name>
@@ -3351,11 +3355,11 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     </message>
     <message>
         <source>Give the work object as measured with the new robot</source>
-        <translation>Das Werkstückkoordinatensystem, mit dem neuen Roboter gemessen</translation>
+        <translation>Das Werkobjekt, mit dem neuen Roboter gemessen</translation>
     </message>
     <message>
         <source>Work object in the new robot&apos;s base</source>
-        <translation>Werkstückkoordinaten in der Basis des neuen Roboters</translation>
+        <translation>Werkobjekt in der Basis des neuen Roboters</translation>
     </message>
     <message>
         <source>base_from_workobject, measured with the new robot</source>
@@ -3425,7 +3429,7 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     </message>
     <message>
         <source>Every view has been taken and the solution does not serve yet: state the robot&apos;s repeatability, leave out what stands out, or jog to other places and capture there.</source>
-        <translation>Jede Ansicht ist aufgenommen und die Lösung genügt noch nicht: die Wiederholgenauigkeit des Roboters angeben, auslassen, was herausfällt, oder an andere Stellen verfahren und dort aufnehmen.</translation>
+        <translation>Jede Ansicht ist aufgenommen und die Lösung genügt noch nicht: die Wiederholgenauigkeit des Roboters angeben, weglassen, was herausfällt, oder an andere Stellen verfahren und dort aufnehmen.</translation>
     </message>
     <message numerus="yes">
         <source>%n pose(s) agree, but the solution is %1: %2</source>
@@ -3925,6 +3929,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <source>not connected</source>
         <translation>nicht verbunden</translation>
     </message>
+    <message>
+        <source>A value is refused: mend it, or press Esc in its field.</source>
+        <translation>Ein Wert wurde abgelehnt: berichtigen, oder in seinem Feld Esc drücken.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::Histogram</name>
@@ -4139,7 +4147,7 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     </message>
     <message>
         <source>Path corrected by a run...</source>
-        <translation>Von einem Lauf korrigierter Pfad...</translation>
+        <translation>Von einem Lauf korrigierte Bahn...</translation>
     </message>
     <message>
         <source>Program for the robot&apos;s controller...</source>
@@ -4664,7 +4672,7 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     </message>
     <message>
         <source>Makes a second project, as the left door becomes the right one: spots, features, regions and frames are reflected in a plane of the work object. Sensors, robots and calibrations stay. Runs and proofs stay with this project.</source>
-        <translation>Macht ein zweites Projekt, wie aus der linken Tür die rechte wird: Messstellen, Merkmale, Korrekturbereiche und Frames werden an einer Ebene des Werkstückkoordinatensystems gespiegelt. Sensoren, Roboter und Kalibrierungen bleiben. Läufe und Nachweise bleiben bei diesem Projekt.</translation>
+        <translation>Macht ein zweites Projekt, wie aus der linken Tür die rechte wird: Messstellen, Merkmale, Korrekturbereiche und Frames werden an einer Ebene des Werkobjekts gespiegelt. Sensoren, Roboter und Kalibrierungen bleiben. Läufe und Nachweise bleiben bei diesem Projekt.</translation>
     </message>
     <message>
         <source>X changes its sign</source>
@@ -4684,7 +4692,7 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     </message>
     <message>
         <source>The axis of the work object that the plane stands across</source>
-        <translation>Die Achse des Werkstückkoordinatensystems, zu der die Ebene quer steht</translation>
+        <translation>Die Achse des Werkobjekts, zu der die Ebene quer steht</translation>
     </message>
     <message>
         <source> mm</source>
@@ -4696,7 +4704,7 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     </message>
     <message>
         <source>From the work object&apos;s origin, along that axis</source>
-        <translation>Vom Ursprung der Werkstückkoordinaten, entlang dieser Achse</translation>
+        <translation>Vom Ursprung des Werkobjekts, entlang dieser Achse</translation>
     </message>
     <message>
         <source>Make the clone</source>
@@ -4751,6 +4759,18 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>&quot;%1&quot; is refused: %2. %3 stays.</source>
         <translation>„%1“ wird abgelehnt: %2. %3 bleibt.</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is not a number; give %2</source>
+        <translation>„%1“ ist keine Zahl; anzugeben ist %2</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; has another unit; give %2</source>
+        <translation>„%1“ hat eine andere Einheit; anzugeben ist %2</translation>
+    </message>
+    <message>
+        <source>%1 Nothing was begun: press again to go on with it.</source>
+        <translation>%1 Nichts wurde begonnen: noch einmal drücken, um damit fortzufahren.</translation>
     </message>
 </context>
 <context>
@@ -4843,6 +4863,29 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <source>Matrix 4 x 4</source>
         <translation>Matrix 4 x 4</translation>
     </message>
+    <message>
+        <source>%1: &quot;%2&quot; has another unit; give it in %3</source>
+        <translation>%1: „%2“ hat eine andere Einheit; in %3 angeben</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n pose(s), one a line</source>
+        <translation>
+            <numerusform>%n Pose</numerusform>
+            <numerusform>%n Posen, eine je Zeile</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>give one of them</source>
+        <translation>eine davon angeben</translation>
+    </message>
+    <message>
+        <source>an angle of %1 degrees</source>
+        <translation>ein Winkel von %1 Grad</translation>
+    </message>
+    <message>
+        <source>give degrees from -360 to 360</source>
+        <translation>Grad von -360 bis 360 angeben</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::ProfilePlot</name>
@@ -4930,7 +4973,7 @@ hier keine Referenz</translation>
     </message>
     <message>
         <source>Brightness of the stripe along x</source>
-        <translation>Helligkeit des Laserstrichs über x</translation>
+        <translation>Helligkeit des Streifens über x</translation>
     </message>
     <message>
         <source>Freeze</source>
@@ -4969,7 +5012,7 @@ hier keine Referenz</translation>
     </message>
     <message>
         <source>Region</source>
-        <translation>Bereich</translation>
+        <translation>Korrekturbereich</translation>
     </message>
     <message>
         <source>Direction</source>
@@ -5254,7 +5297,7 @@ A %5  B %6  C %7 Grad</translation>
     </message>
     <message>
         <source>Six clicks on the part in 3D: three on a plane, two along X, one for the origin; the frame goes there</source>
-        <translation>Sechs Klicks auf das Teil in 3D: drei auf einer Ebene, zwei entlang X, einer für den Ursprung; das Koordinatensystem kommt dorthin</translation>
+        <translation>Sechs Klicks auf das Teil in 3D: drei auf einer Ebene, zwei entlang X, einer für den Ursprung; der Frame kommt dorthin</translation>
     </message>
     <message>
         <source>There is no part to click on: step 1, Cell, imports its mesh.</source>
@@ -5274,11 +5317,11 @@ A %5  B %6  C %7 Grad</translation>
     </message>
     <message>
         <source>Frame by 3-2-1: %1.</source>
-        <translation>Koordinatensystem nach 3-2-1: %1.</translation>
+        <translation>Frame nach 3-2-1: %1.</translation>
     </message>
     <message>
         <source>The frame stands where it was picked; undo brings the old one back.</source>
-        <translation>Das Koordinatensystem steht, wo geklickt wurde; Rückgängig bringt das alte wieder.</translation>
+        <translation>Der Frame steht, wo geklickt wurde; Rückgängig bringt das alte wieder.</translation>
     </message>
     <message>
         <source>Encircle spots</source>
@@ -5294,7 +5337,7 @@ A %5  B %6  C %7 Grad</translation>
     </message>
     <message>
         <source>Regions</source>
-        <translation>Bereiche</translation>
+        <translation>Korrekturbereiche</translation>
     </message>
     <message>
         <source>The project&apos;s regions</source>
@@ -5322,7 +5365,7 @@ A %5  B %6  C %7 Grad</translation>
     </message>
     <message>
         <source>Add region</source>
-        <translation>Bereich hinzufügen</translation>
+        <translation>Korrekturbereich hinzufügen</translation>
     </message>
     <message>
         <source>A further region</source>
@@ -5662,7 +5705,7 @@ ausgelassen</translation>
     </message>
     <message>
         <source>Region</source>
-        <translation>Bereich</translation>
+        <translation>Korrekturbereich</translation>
     </message>
     <message>
         <source>Verdict</source>
@@ -5858,7 +5901,7 @@ ausgelassen</translation>
     </message>
     <message>
         <source>Region, verdict</source>
-        <translation>Bereich, Urteil</translation>
+        <translation>Korrekturbereich, Urteil</translation>
     </message>
     <message>
         <source>Part %1 is measured and waits for your answer below.</source>
@@ -5976,7 +6019,7 @@ ausgelassen</translation>
     </message>
     <message>
         <source>Regions</source>
-        <translation>Bereiche</translation>
+        <translation>Korrekturbereiche</translation>
     </message>
     <message>
         <source>Corrections</source>
@@ -6010,8 +6053,8 @@ ausgelassen</translation>
         <translation>abgelehnt: %1</translation>
     </message>
     <message>
-        <source>not a number</source>
-        <translation>keine Zahl</translation>
+        <source>&quot;%1&quot; is not a number; give %2 to %3</source>
+        <translation>„%1“ ist keine Zahl; anzugeben ist %2 bis %3</translation>
     </message>
     <message>
         <source>outside %1 to %2</source>
@@ -6149,7 +6192,7 @@ ausgelassen</translation>
     </message>
     <message>
         <source>Next: regions</source>
-        <translation>Weiter: Bereiche</translation>
+        <translation>Weiter: Korrekturbereiche</translation>
     </message>
     <message>
         <source>Confirm</source>
@@ -6204,7 +6247,7 @@ ausgelassen</translation>
     </message>
     <message>
         <source>The robot stands at the spot; exposure and gain are found from the stripe</source>
-        <translation>Der Roboter steht an der Messstelle; Belichtung und Verstärkung werden an der Linie gefunden</translation>
+        <translation>Der Roboter steht an der Messstelle; Belichtung und Verstärkung werden am Streifen gefunden</translation>
     </message>
     <message>
         <source>As the sensor</source>
@@ -6232,7 +6275,7 @@ ausgelassen</translation>
     </message>
     <message>
         <source>No stripe was seen (frames: %1): is the laser on, the part there?</source>
-        <translation>Keine Linie zu sehen (Bilder: %1): ist der Laser an, das Teil da?</translation>
+        <translation>Kein Streifen zu sehen (Bilder: %1): ist der Laser an, das Teil da?</translation>
     </message>
     <message>
         <source>Found (frames: %1).</source>
@@ -6487,6 +6530,10 @@ ausgelassen</translation>
         <source>The panel was not taught.</source>
         <translation>Das Anbauteil wurde nicht eingelernt.</translation>
     </message>
+    <message>
+        <source>&quot;%1&quot; was not begun.</source>
+        <translation>„%1“ wurde nicht begonnen.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::StepPage</name>
@@ -6529,6 +6576,10 @@ ausgelassen</translation>
     <message>
         <source>No project is open: open one or make a new one (menu File).</source>
         <translation>Es ist kein Projekt offen: eines öffnen oder ein neues anlegen (Menü Datei).</translation>
+    </message>
+    <message>
+        <source>A value is refused: mend it, or press Esc in its field.</source>
+        <translation>Ein Wert wurde abgelehnt: berichtigen, oder in seinem Feld Esc drücken.</translation>
     </message>
 </context>
 <context>
@@ -7035,11 +7086,11 @@ und %1 weitere</translation>
     <name>seamwright::PathDialog</name>
     <message>
         <source>Path corrected by a run</source>
-        <translation>Von einem Lauf korrigierter Pfad</translation>
+        <translation>Von einem Lauf korrigierte Bahn</translation>
     </message>
     <message>
         <source>Taught path</source>
-        <translation>Eingelernter Pfad</translation>
+        <translation>Eingelernte Bahn</translation>
     </message>
     <message>
         <source>A table or a robot program</source>
@@ -7047,7 +7098,7 @@ und %1 weitere</translation>
     </message>
     <message>
         <source>Choose the path...</source>
-        <translation>Pfad wählen...</translation>
+        <translation>Bahn wählen...</translation>
     </message>
     <message>
         <source>A table (.csv) or a robot program: KRL, RAPID, FANUC, URScript, APT</source>
@@ -7083,15 +7134,15 @@ und %1 weitere</translation>
     </message>
     <message>
         <source>The run whose displacements move the path</source>
-        <translation>Der Lauf, dessen Verschiebungen den Pfad bewegen</translation>
+        <translation>Der Lauf, dessen Verschiebungen die Bahn bewegen</translation>
     </message>
     <message>
         <source>The path goes on from its last point to its first</source>
-        <translation>Der Pfad geht vom letzten Punkt zum ersten weiter</translation>
+        <translation>Die Bahn geht vom letzten Punkt zum ersten weiter</translation>
     </message>
     <message>
         <source>A closed bead</source>
-        <translation>Eine geschlossene Naht</translation>
+        <translation>Eine geschlossene Raupe</translation>
     </message>
     <message>
         <source>Without the lines that are not understood</source>
@@ -7099,7 +7150,7 @@ und %1 weitere</translation>
     </message>
     <message>
         <source>Of a program; the path then has gaps there</source>
-        <translation>Bei einem Programm; der Pfad hat dort dann Lücken</translation>
+        <translation>Bei einem Programm; die Bahn hat dort dann Lücken</translation>
     </message>
     <message>
         <source>Region</source>
@@ -7119,7 +7170,7 @@ und %1 weitere</translation>
     </message>
     <message>
         <source>What each region does to the path</source>
-        <translation>Was jeder Korrekturbereich mit dem Pfad macht</translation>
+        <translation>Was jeder Korrekturbereich mit der Bahn macht</translation>
     </message>
     <message>
         <source>Program for</source>
@@ -7163,7 +7214,7 @@ und %1 weitere</translation>
     </message>
     <message>
         <source>The path leaves the scene</source>
-        <translation>Der Pfad verschwindet aus der Szene</translation>
+        <translation>Die Bahn verschwindet aus der Szene</translation>
     </message>
     <message>
         <source>run %1: %2, %3</source>
@@ -7171,7 +7222,7 @@ und %1 weitere</translation>
     </message>
     <message>
         <source>Choose the path as it was taught.</source>
-        <translation>Den Pfad wählen, wie er eingelernt wurde.</translation>
+        <translation>Die Bahn wählen, wie sie eingelernt wurde.</translation>
     </message>
     <message>
         <source>There is no run yet: measure a part first.</source>
@@ -7187,7 +7238,7 @@ und %1 weitere</translation>
     </message>
     <message>
         <source>Paths (*.csv *.src *.mod *.sys *.prg *.ls *.script *.urscript *.apt *.cl *.cls);;All files (*)</source>
-        <translation>Pfade (*.csv *.src *.mod *.sys *.prg *.ls *.script *.urscript *.apt *.cl *.cls);;Alle Dateien (*)</translation>
+        <translation>Bahnen (*.csv *.src *.mod *.sys *.prg *.ls *.script *.urscript *.apt *.cl *.cls);;Alle Dateien (*)</translation>
     </message>
     <message>
         <source>Folder of the program</source>
@@ -7210,7 +7261,7 @@ und %1 weitere</translation>
     </message>
     <message>
         <source>The module that talks to Seamwright, the measuring program with entry, trigger and exit of every spot, and the application&apos;s frames. Drive it slowly once before it runs by itself.</source>
-        <translation>Das Modul, das mit Seamwright spricht, das Messprogramm mit Einfahrt, Auslösung und Ausfahrt jeder Messstelle und die Koordinatensysteme der Anwendung. Einmal langsam abfahren, bevor es allein läuft.</translation>
+        <translation>Das Modul, das mit Seamwright spricht, das Messprogramm mit Einfahrt, Auslösung und Ausfahrt jeder Messstelle und die Frames der Anwendung. Einmal langsam abfahren, bevor es allein läuft.</translation>
     </message>
     <message>
         <source>Robot</source>
@@ -7270,7 +7321,7 @@ und %1 weitere</translation>
     </message>
     <message>
         <source>%1 spots, %2 frames: %3</source>
-        <translation>%1 Messstellen, %2 Koordinatensysteme: %3</translation>
+        <translation>%1 Messstellen, %2 Frames: %3</translation>
     </message>
     <message>
         <source>Folder of the program</source>

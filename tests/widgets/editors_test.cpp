@@ -96,6 +96,66 @@ TEST(ParameterEditor, CommitsRefusesAndGoesBack) {
     EXPECT_DOUBLE_EQ(editor.value(), 1.23456);
 }
 
+// What stands beside the field may be typed into it; another unit is told, with what to give.
+TEST(ParameterEditor, TakesItsUnitAndSaysWhatToGive) {
+    ParameterEditor editor({"window_mm", "mm", 1, 50, 2, 2, "Half width."});
+    ParameterEditor angle({"turn_deg", "deg", -90, 90, 0, 1, "Turn."});
+    ParameterEditor bare({"count", "", 1, 50, 2, 0, "How many."});
+    for (ParameterEditor* one : {&editor, &angle, &bare}) {
+        one->show();
+        ASSERT_TRUE(QTest::qWaitForWindowExposed(one));
+    }
+    const auto type = [](ParameterEditor& into, const char* text) {
+        auto* line = into.findChild<QLineEdit*>();
+        line->selectAll();
+        QTest::keyClicks(line, QString::fromUtf8(text));
+        QTest::keyClick(line, Qt::Key_Return);
+        return into.reason().toStdString();
+    };
+    EXPECT_EQ(type(editor, "30 mm"), "");
+    EXPECT_DOUBLE_EQ(editor.value(), 30);
+    EXPECT_EQ(type(editor, "12,5mm"), "");
+    EXPECT_DOUBLE_EQ(editor.value(), 12.5);
+    EXPECT_EQ(type(angle, "-3,5 deg"), "");
+    EXPECT_EQ(type(angle, "-4°"), "");
+    EXPECT_DOUBLE_EQ(angle.value(), -4);
+    EXPECT_EQ(type(editor, "0.03 m"), "\"0.03 m\" has another unit; give 1.00 to 50.00 mm");
+    EXPECT_EQ(type(editor, "abc"), "\"abc\" is not a number; give 1.00 to 50.00 mm");
+    EXPECT_EQ(type(editor, "1,2,3"), "\"1,2,3\" is not a number; give 1.00 to 50.00 mm");
+    EXPECT_EQ(type(bare, "30 mm"), "\"30 mm\" is not a number; give 1 to 50");
+    EXPECT_DOUBLE_EQ(editor.value(), 12.5) << "what was refused is nowhere";
+}
+
+// A field takes a number with its unit, a whole pose that is pasted, and nothing that is neither.
+TEST(PoseEditor, WhatIsPastedIntoAFieldIsANumberOrAPose) {
+    PoseEditor editor;
+    editor.set_notation(PoseNotation::kuka_abc);
+    editor.show();
+    ASSERT_TRUE(QTest::qWaitForWindowExposed(&editor));
+    auto* x = editor.findChildren<QLineEdit*>().at(0);
+    const auto paste = [&](const char* text) {
+        x->selectAll();
+        QApplication::clipboard()->setText(QString::fromUtf8(text));
+        QTest::keyClick(x, Qt::Key_V, Qt::ControlModifier);
+        QTest::keyClick(x, Qt::Key_Return);
+        return editor.reason().toStdString();
+    };
+    EXPECT_EQ(paste("30 mm"), "");
+    EXPECT_DOUBLE_EQ(editor.pose().translation().x(), 30);
+    EXPECT_EQ(paste("0.03 m"), "X: \"0.03 m\" has another unit; give it in mm");
+    EXPECT_EQ(paste("abc"), "X: \"abc\" is not a number");
+    EXPECT_EQ(x->text(), "abc") << "and stays there to be mended";
+    QTest::keyClick(x, Qt::Key_Escape);
+    EXPECT_EQ(paste("X\tY\tZ\tA\tB\tC\n1,5\t2,5\t3,5\t10,5\t20,5\t30,5"), "");
+    EXPECT_DOUBLE_EQ(editor.pose().translation().z(), 3.5);
+    EXPECT_NE(paste("1;2;3;0;0;0\n4;5;6;0;0;0").find("give one of them"), std::string::npos)
+        << "two poses are no matrix";
+    EXPECT_NE(paste("1 2 3 1e300 0 0").find("from -360 to 360"), std::string::npos);
+    EXPECT_NE(paste("1e300 2 3 0 0 0").find("100 m"), std::string::npos);
+    EXPECT_NE(paste("1 2 3").find("a pose of 3 numbers"), std::string::npos);
+    EXPECT_DOUBLE_EQ(editor.pose().translation().x(), 1.5) << "refused, it is nowhere";
+}
+
 TEST(NameEditor, WhatIsRefusedStaysUntilItIsMendedOrTakenBack) {
     std::string taken;
     NameEditor editor("Name", "tip", [&](const std::string& name) -> Expected<void> {

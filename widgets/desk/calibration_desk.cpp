@@ -18,13 +18,6 @@
 namespace seamwright {
 namespace {
 
-constexpr double kStillSeconds = 0.5, kStillMm = 0.02, kStillDeg = 0.005;
-// Of the radius: so near to each other lie the circles of one sphere in two frames one after the other, the robot being
-// jogged.
-constexpr double kSameCircle = 0.25, kSameRadius = 0.1;
-// Nearer than this to a capture nothing is captured by itself.
-constexpr double kNewMm = 3, kNewDeg = 1;
-
 // The whole state before and after: captures are shared, so that it costs a list.
 class CmdSession final : public QUndoCommand {
   public:
@@ -67,6 +60,13 @@ class CmdAnew final : public QUndoCommand {
 CalibrationDesk::CalibrationDesk(Desk& desk, QObject* parent)
     : QObject(parent), desk_(desk), thread_([this](const std::stop_token& stop) { work(stop); }) {
     connect(&desk_, &Desk::opened, this, &CalibrationDesk::close);
+    connect(&desk_, &Desk::sensor_renamed, this, [this](const std::string& from, const std::string& to) {
+        if (session_)
+            follow(session_->sensor_id() == from ? to : session_->sensor_id(), session_->robot_id());
+    });
+    connect(&desk_, &Desk::robot_renamed, this, [this](const std::string& from, const std::string& to) {
+        if (session_) follow(session_->sensor_id(), session_->robot_id() == from ? to : session_->robot_id());
+    });
     connect(&desk_, &Desk::station_changed, this, &CalibrationDesk::watch_robot);
     connect(&desk_.live(), &LiveFeed::arrived, this, &CalibrationDesk::look);
     connect(&desk_.worker(), &StationWorker::shots_taken, this, &CalibrationDesk::take_shots);
@@ -109,7 +109,9 @@ Expected<void> CalibrationDesk::open(const MethodId& method, const SensorId& sen
     close();
     std::vector<std::string> robots;
     for (const RobotSetup& r : desk_.project().robots) robots.push_back(r.id);
-    SEAM_TRY(auto session, CalibrationSession::open(desk_.path(), method, sensor, robot, robots));
+    std::vector<std::string> sensors;
+    for (const SensorSetup& s : desk_.project().sensors) sensors.push_back(s.id);
+    SEAM_TRY(auto session, CalibrationSession::open(desk_.path(), method, sensor, robot, robots, sensors));
     session_ = std::move(session);
     for (const Text& notice : session_->notices()) emit refused(shown(notice));
     if (session_->state().captures.empty())
@@ -121,6 +123,14 @@ Expected<void> CalibrationDesk::open(const MethodId& method, const SensorId& sen
     emit changed();
     solve_when_due();
     return {};
+}
+
+// Chains name their sensors in their captures, which undo would bring back with the former name.
+void CalibrationDesk::follow(const std::string& sensor, const std::string& robot) {
+    if (session_->method().capture != CaptureKind::board_chain) return session_->renamed(sensor, robot);
+    const MethodId method(session_->method().id);
+    if (auto opened = open(method, SensorId(sensor), RobotId(robot)); !opened)
+        emit refused(shown_error(opened.error()));
 }
 
 void CalibrationDesk::close() {
@@ -383,99 +393,6 @@ void CalibrationDesk::cancel() {
         desk_.worker().cancel();
     }
     set_doing({});
-}
-
-void CalibrationDesk::set_automatic(bool on) {
-    automatic_ = on;
-    stillness_ = 0;
-    emit still_changed();
-}
-
-void CalibrationDesk::set_looking(bool on) {
-    looking_ = on;
-    if (on) look();
-}
-
-bool CalibrationDesk::switches_laser() const {
-    for (const SensorState& s : desk_.station().sensors)
-        if (s.id == session_->sensor_id())
-            return std::any_of(s.parameters.begin(), s.parameters.end(),
-                               [](const ParameterInfo& p) { return p.name == "laser"; });
-    return false;
-}
-
-// The newest live frame through the same function that captures, so that what is outlined is what will be
-// taken.
-void CalibrationDesk::look() {
-    if (!session_ || !looking_ || look_pending_ || session_->method().capture == CaptureKind::files ||
-        session_->method().capture == CaptureKind::touch)
-        return;
-    const SensorSetup* sensor = find_sensor(desk_.project(), session_->sensor_id());
-    const auto snapshot = desk_.live().latest(session_->sensor_id());
-    if (!sensor || !snapshot || !snapshot->frame || snapshot->number == looked_number_) return;
-    looked_number_ = snapshot->number;
-    look_pending_ = true;
-    // Where the robot stands does not matter to a target that is only looked for.
-    std::optional<Pose> at = robot_pose();
-    if (!at && session_->method().robot) at = Pose::Identity();
-    std::optional<Calibration> used;
-    if (base()) used = *base();
-    auto settings = capture_settings();
-    post([this, frame = snapshot->frame, used, at, sensor = *sensor, method = &session_->method(),
-          settings = settings ? *settings : session_->state().settings,
-          generation = generation_](const std::stop_token&) {
-        auto live = std::make_shared<LiveTarget>();
-        live->frame = frame;
-        auto taken = capture_shot(*method, settings, sensor, used ? &*used : nullptr, *frame, nullptr, at);
-        if (taken) {
-            live->seen = true;
-            live->picture = entry_picture(*method, taken->settings, taken->capture.entry);
-        } else {
-            live->words = shown_error(taken.error());
-        }
-        QMetaObject::invokeMethod(this, [this, live, generation] {
-            look_pending_ = false;
-            if (generation != generation_) return;
-            // A chance likeness does not stay from frame to frame.
-            const auto before = std::exchange(circle_, live->picture.circle);
-            if (circle_ && !(before && (*before - *circle_).head<2>().norm() < kSameCircle * before->z() &&
-                             std::abs(before->z() - circle_->z()) < kSameRadius * before->z())) {
-                live->seen = false;
-                live->words = tr("A circle, but not yet twice at the same place: hold the sensor still.");
-            }
-            live_ = std::move(*live);
-            emit looked();
-        });
-    });
-}
-
-void CalibrationDesk::watch_robot() {
-    if (!session_ || !automatic_) return;
-    const std::optional<Pose> at = robot_pose();
-    if (!at) {
-        last_pose_.reset();
-        stillness_ = 0;
-        return emit still_changed();
-    }
-    const bool moved = !last_pose_ || distance_mm(*at, *last_pose_) > kStillMm ||
-                       angle_rad(*at, *last_pose_) > rad_from_deg(kStillDeg);
-    last_pose_ = at;
-    if (moved) still_since_.start();
-    const bool known = std::any_of(
-        session_->state().captures.begin(), session_->state().captures.end(), [&](const SessionCapture& c) {
-            return c.taken->base_from_flange && distance_mm(*c.taken->base_from_flange, *at) < kNewMm &&
-                   angle_rad(*c.taken->base_from_flange, *at) < rad_from_deg(kNewDeg);
-        });
-    stillness_ = known || moved
-                     ? 0
-                     : std::min(1.0, static_cast<double>(still_since_.elapsed()) / (1000 * kStillSeconds));
-    emit still_changed();
-    // A board is looked for with the laser off when it is captured; all other targets must be seen before.
-    const bool seen = live_.seen || shows_board(session_->method().capture);
-    if (stillness_ >= 1 && seen && !busy() && !desk_.worker().busy()) {
-        still_since_.start();
-        capture(false);
-    }
 }
 
 Expected<void> CalibrationDesk::finish(bool use) {

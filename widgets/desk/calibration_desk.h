@@ -116,6 +116,7 @@ class CalibrationDesk : public QObject {
     Expected<nlohmann::json> capture_settings() const;
     void watch_robot();
     void exchange(std::filesystem::path& parked);
+    void follow(const std::string& sensor, const std::string& robot);
     void set_doing(const QString& what);
     Expected<void> edited(Expected<void> done, const QString& text, const SessionState& before);
 

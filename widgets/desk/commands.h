@@ -125,8 +125,14 @@ class CmdRemove final : public DeskCommand {
 template <class T>
 class CmdRename final : public DeskCommand {
   public:
-    CmdRename(Editor editor, std::size_t at, std::string from, std::string to)
-        : DeskCommand(std::move(editor)), at_(at), from_(std::move(from)), to_(std::move(to)) {
+    // Hears of every change of the name, undo and redo too, before the document tells it.
+    using Told = std::function<void(const std::string& from, const std::string& to)>;
+    CmdRename(Editor editor, std::size_t at, std::string from, std::string to, Told told = {})
+        : DeskCommand(std::move(editor)),
+          at_(at),
+          from_(std::move(from)),
+          to_(std::move(to)),
+          told_(std::move(told)) {
         setText(DeskCommand::tr("Rename %1 %2 to %3")
                     .arg(thing_name<T>(), QString::fromStdString(from_), QString::fromStdString(to_)));
     }
@@ -141,16 +147,19 @@ class CmdRename final : public DeskCommand {
                 renamed_.push_back(i);
             }
         list_of<T>(p)[at_].id = to_;
+        if (told_) told_(from_, to_);
     }
     void revert(Project& p) override {
         const auto all = references(p, static_cast<const T*>(nullptr));
         for (const std::size_t i : renamed_) *all[i] = from_;
         list_of<T>(p)[at_].id = from_;
+        if (told_) told_(to_, from_);
     }
 
   private:
     std::size_t at_;
     std::string from_, to_;
+    Told told_;
     std::vector<std::size_t> renamed_;  // of references()
 };
 

@@ -133,9 +133,12 @@ class Desk : public QObject {
     void note(EventKind kind, const std::string& subject, const Text& text);
 
   signals:
-    void loading();          // another project is about to be opened(), not this one under another name
-    void opened();           // another project, or none
-    void person_changed();   // signed in, signed out
+    void loading();         // another project is about to be opened(), not this one under another name
+    void opened();          // another project, or none
+    void person_changed();  // signed in, signed out
+    // By edit, undo or redo; the sessions of its calibrations have followed. Before project_changed().
+    void sensor_renamed(std::string from, std::string to);
+    void robot_renamed(std::string from, std::string to);
     void project_changed();  // by edit, undo, redo, restore
     void modified_changed(bool modified);
     void checklist_changed();
@@ -154,6 +157,8 @@ class Desk : public QObject {
     void keep_newest();  // the recovery file holds the project as it is
     void changed();
     void push(std::unique_ptr<DeskCommand> edit);
+    template <class T>
+    void device_renamed(const std::string& from, const std::string& to);
     // All edits that `edits` makes, or none: one change of the project and one step of undo.
     Expected<void> together(const QString& text, const std::function<Expected<void>()>& edits);
     void derive();

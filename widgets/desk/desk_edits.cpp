@@ -5,6 +5,7 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
 #include "devices/simulated/scene/mesh_file.h"
+#include "projects/calibrate/session/session.h"
 #include "projects/calibrate/session/use.h"
 #include "projects/file/id_length.h"
 #include "projects/file/project_json.h"
@@ -12,6 +13,7 @@
 #include "projects/measure/measure.h"
 #include "projects/station/check.h"
 #include "widgets/desk/desk.h"
+#include "widgets/shown_text.h"
 
 namespace seamwright {
 namespace {
@@ -148,6 +150,23 @@ Expected<void> Desk::remove(const std::string& id) {
     return {};
 }
 
+// What was captured of a device lies beside the project under its name.
+template <class T>
+void Desk::device_renamed(const std::string& from, const std::string& to) {
+    Expected<void> followed;
+    if constexpr (std::is_same_v<T, SensorSetup>) {
+        std::vector<std::string> others;
+        for (const SensorSetup& s : project_.sensors)
+            if (s.id != from && s.id != to) others.push_back(s.id);
+        followed = CalibrationSession::rename_sensor(path(), from, to, others);
+        emit sensor_renamed(from, to);
+    } else {
+        followed = CalibrationSession::rename_robot(path(), from, to);
+        emit robot_renamed(from, to);
+    }
+    if (!followed) emit trouble(shown_error(followed.error()));
+}
+
 template <class T>
 Expected<void> Desk::rename(const std::string& from, const std::string& to) {
     SEAM_OK(may(kDeedOf<T>));
@@ -160,7 +179,12 @@ Expected<void> Desk::rename(const std::string& from, const std::string& to) {
     const bool spot = std::is_same_v<T, Spot> && selection_.spot() == from;
     const bool region = std::is_same_v<T, Region> && selection_.region() == from;
     const bool sensor = std::is_same_v<T, SensorSetup> && selection_.sensor() == from;
-    push(std::make_unique<CmdRename<T>>(editor(), static_cast<std::size_t>(at), from, to));
+    typename CmdRename<T>::Told told;
+    if constexpr (std::is_same_v<T, SensorSetup> || std::is_same_v<T, RobotSetup>)
+        told = [this](const std::string& old_name, const std::string& new_name) {
+            device_renamed<T>(old_name, new_name);
+        };
+    push(std::make_unique<CmdRename<T>>(editor(), static_cast<std::size_t>(at), from, to, std::move(told)));
     if (spot) selection_.select_spot(to);
     if (region) selection_.select_region(to);
     if (sensor) selection_.select_sensor(to);

@@ -137,6 +137,8 @@ void GapDialog::drive() {
 }
 
 void GapDialog::ask_and_drive() {
+    if (const QString why = take_refused_number(*this); !why.isEmpty())
+        return set_verdict(*verdict_, why, Tone::attention);
     if (QMessageBox::question(this, windowTitle(),
                               tr("The robot now drives along %1. Is its way free?").arg(spots_->text())) ==
         QMessageBox::Yes)

@@ -224,6 +224,8 @@ Expected<std::vector<std::filesystem::path>> PathDialog::write_into(const QStrin
 }
 
 void PathDialog::choose_folder() {
+    if (const QString why = take_refused_number(*this); !why.isEmpty())
+        return set_verdict(*verdict_, why, Tone::attention);
     const QString folder = QFileDialog::getExistingDirectory(
         this, tr("Folder of the program"), QFileInfo(QString::fromStdString(desk_.path().string())).path());
     if (folder.isEmpty()) return;

@@ -18,16 +18,30 @@ bool refuses(QWidget* widget) {
     return editor && editor->refused();
 }
 
+bool is_refused(QWidget* widget) {
+    return refuses<ParameterEditor>(widget) || refuses<PoseEditor>(widget) || refuses<NameEditor>(widget) ||
+           refuses<SettingsEditor>(widget);
+}
+
 }  // namespace
+
+QWidget* refused_field(QWidget& whole, bool settings) {
+    const auto is_setting = [](QWidget* widget) {
+        while (widget && !qobject_cast<SettingsEditor*>(widget)) widget = widget->parentWidget();
+        return widget != nullptr;
+    };
+    for (QWidget* widget : whole.findChildren<QWidget*>())
+        if (is_refused(widget) && widget->isVisibleTo(&whole) && (settings || !is_setting(widget)))
+            return widget;
+    return nullptr;
+}
 
 bool leave_field(QWidget& whole) {
     const QPointer<QWidget> field = QApplication::focusWidget();
     if (!field || !whole.isAncestorOf(field)) return true;
     field->clearFocus();
     QWidget* refused = field;
-    while (refused && !refuses<ParameterEditor>(refused) && !refuses<PoseEditor>(refused) &&
-           !refuses<NameEditor>(refused) && !refuses<SettingsEditor>(refused))
-        refused = refused->parentWidget();
+    while (refused && !is_refused(refused)) refused = refused->parentWidget();
     if (field) field->setFocus();
     if (auto* form = qobject_cast<SettingsEditor*>(refused))
         form->show_refused();  // it may be another of its fields

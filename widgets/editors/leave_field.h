@@ -9,4 +9,8 @@ namespace seamwright {
 // a field of the same form does; it stays, has the focus and is scrolled to.
 bool leave_field(QWidget& whole);
 
+// An editor within `whole` that holds what it has refused, wherever the focus is; what `whole` hides of itself left out.
+// `settings`: of devices too, which count with the next connecting. nullptr: none.
+QWidget* refused_field(QWidget& whole, bool settings = true);
+
 }  // namespace seamwright

@@ -3,6 +3,7 @@
 #include <QKeyEvent>
 #include <QLineEdit>
 #include <algorithm>
+#include <utility>
 
 #include "widgets/style.h"
 
@@ -29,6 +30,24 @@ QString NumberBox::reason() const {
     return reason_;
 }
 
+QString NumberBox::take_reason() {
+    if (hasFocus()) {
+        look();
+        const QString why = reason_;
+        interpretText();
+        say(why);
+    }
+    return std::exchange(reason_, {});
+}
+
+QString take_refused_number(const QWidget& whole) {
+    for (QDoubleSpinBox* spin : whole.findChildren<QDoubleSpinBox*>())
+        if (auto* box = dynamic_cast<NumberBox*>(spin); box && box->isVisibleTo(&whole))
+            if (const QString why = box->take_reason(); !why.isEmpty())
+                return ParameterEditor::tr("%1 Nothing was begun: press again to go on with it.").arg(why);
+    return {};
+}
+
 QString NumberBox::bare(QString text) const {
     if (text.endsWith(suffix())) text.chop(suffix().size());
     return text.trimmed();
@@ -43,7 +62,7 @@ void NumberBox::look() {
                      .arg(textFromValue(minimum()) + " .. " + textFromValue(maximum()) + suffix())
                : ParameterEditor::tr("not a number");
     say(ParameterEditor::tr("\"%1\" is refused: %2. %3 stays.")
-            .arg(typed.left(32), why, textFromValue(value()) + suffix()));
+            .arg(typed.left(kTypedSigns), why, textFromValue(value()) + suffix()));
 }
 
 void NumberBox::say(const QString& reason) {

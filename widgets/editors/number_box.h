@@ -20,6 +20,8 @@ class NumberBox : public QDoubleSpinBox {
     QValidator::State validate(QString& text, int&) const override;
     void fixup(QString&) const override {}  // Qt's takes the points of a German number out: 0.05 were 5
     QString reason() const;  // why the last one that was typed is refused; empty when it was taken
+    // The same before a deed that goes by the number, once: whoever asks again has been told. What is still being typed counts.
+    QString take_reason();
 
   protected:
     void keyPressEvent(QKeyEvent* event) override;
@@ -33,5 +35,8 @@ class NumberBox : public QDoubleSpinBox {
     QLabel* said_ = nullptr;  // below the field, once something was refused
     QString reason_;
 };
+
+// Why the deed is not begun: the first box within `whole` that has refused what was typed says it, once. Empty: none has.
+QString take_refused_number(const QWidget& whole);
 
 }  // namespace seamwright

@@ -18,6 +18,19 @@ std::optional<double> number_from_text(const QString& text) {
     return value;
 }
 
+QString unit_behind_number(const QString& text) {
+    static const QRegularExpression unit(
+        QStringLiteral(R"(^[+\-−]?[0-9.,]+\s*(°|[A-Za-zµ]+(/[A-Za-z]+)?)$)"));
+    return unit.match(text.trimmed()).captured(1);
+}
+
+std::optional<double> number_from_text(const QString& text, const QStringList& units) {
+    const QString unit = unit_behind_number(text);
+    QString plain = text.trimmed();
+    if (!unit.isEmpty() && units.contains(unit)) plain.chop(unit.size());
+    return number_from_text(plain);
+}
+
 QString text_from_number(double value, int decimals) {
     QString text = QLocale::c().toString(value, 'f', decimals);
     text.remove(',');  // the C locale groups thousands

@@ -30,6 +30,12 @@ namespace {
 
 constexpr int kLabelSigns = 22;
 
+QStringList units_of(const ParameterInfo& info) {
+    QStringList units{QString::fromStdString(info.unit), shown_word(info.unit)};
+    if (info.unit == "deg") units << QStringLiteral("°");
+    return units;
+}
+
 QString range_text(const ParameterInfo& info) {
     return ParameterEditor::tr("%1 to %2 %3")
         .arg(text_from_number(info.minimum, info.decimals), text_from_number(info.maximum, info.decimals),
@@ -150,9 +156,13 @@ bool ParameterEditor::eventFilter(QObject* watched, QEvent* event) {
     const auto commit = [this, &info] {
         // What was not touched keeps its full precision.
         if (!impl_->line->isModified()) return;
-        const auto number = number_from_text(impl_->line->text());
+        const QString typed = impl_->line->text().trimmed();
+        const auto number = number_from_text(typed, units_of(info));
         if (!number)
-            impl_->reason = tr("not a number");
+            impl_->reason =
+                unit_behind_number(typed).isEmpty() || info.unit.empty()
+                    ? tr("\"%1\" is not a number; give %2").arg(typed.left(kTypedSigns), range_text(info))
+                    : tr("\"%1\" has another unit; give %2").arg(typed.left(kTypedSigns), range_text(info));
         else if (*number < info.minimum || *number > info.maximum)
             impl_->reason = tr("outside %1").arg(range_text(info));
         else

@@ -6,6 +6,7 @@
 // field, marked by the word "refused" and the reason; Escape brings the last good value back. A choice is a
 // list of its names.
 
+#include <QStringList>
 #include <QWidget>
 #include <memory>
 #include <optional>
@@ -17,8 +18,14 @@ namespace seamwright {
 // Reads a number as people type it: blanks around, point or comma as decimal sign, exponent allowed, grouping
 // not. Absent for anything else, also for "nan" and "inf".
 std::optional<double> number_from_text(const QString& text);
+// The same with its unit behind it ("30 mm"), which is one of these; a number without one too.
+std::optional<double> number_from_text(const QString& text, const QStringList& units);
+// The unit that stands behind a number; empty: none, or it is no number.
+QString unit_behind_number(const QString& text);
 // With `decimals` places, a point, and no negative zero.
 QString text_from_number(double value, int decimals);
+
+inline constexpr int kTypedSigns = 32;  // of what was typed, as a refusal says it again
 
 class ParameterEditor : public QWidget {
     Q_OBJECT

@@ -101,10 +101,15 @@ bool PoseEditor::Impl::take_typed(PoseEditor& editor) {
     QStringList words;
     const auto fields = fields_of(notation);
     for (std::size_t i = 0; i < fields.size(); ++i) {
-        const auto number = number_from_text(lines[i]->text());
+        const QString typed = lines[i]->text().trimmed().left(kTypedSigns);
+        QStringList own{fields[i].unit};
+        if (fields[i].unit == PoseEditor::tr("deg")) own << QStringLiteral("°");
+        const auto number = number_from_text(lines[i]->text(), own);
+        if (!number && !fields[i].unit.isEmpty() && !unit_behind_number(typed).isEmpty())
+            return refuse(editor, PoseEditor::tr("%1: \"%2\" has another unit; give it in %3")
+                                      .arg(fields[i].name, typed, fields[i].unit));
         if (!number)
-            return refuse(editor,
-                          PoseEditor::tr("%1: \"%2\" is not a number").arg(fields[i].name, lines[i]->text()));
+            return refuse(editor, PoseEditor::tr("%1: \"%2\" is not a number").arg(fields[i].name, typed));
         words << QString::number(*number, 'g', 17);
     }
     return take(editor, words.join(' '));
@@ -238,7 +243,7 @@ bool PoseEditor::eventFilter(QObject* watched, QEvent* event) {
         }
         if (!in_matrix && key->matches(QKeySequence::Paste)) {
             const QString text = QGuiApplication::clipboard()->text();
-            if (!number_from_text(text)) {
+            if (!is_of_one_field(text)) {
                 impl_->take(*this, text);
                 return true;
             }

@@ -24,8 +24,10 @@ QString notation_name(PoseNotation notation);
 // "FANUC" -> fanuc_wpr; anything else kuka_abc, the form of our files.
 PoseNotation notation_of_brand(const std::string& brand);
 
-// Error: wrong count of numbers, not finite, not a rotation.
+// Error: wrong count of numbers, several poses, not finite, not a rotation.
 Expected<Pose> pose_from_text(const QString& text, PoseNotation notation);
+// What is pasted is no pose, but what one field holds, or should.
+bool is_of_one_field(const QString& text);
 QString text_from_pose(const Pose& pose, PoseNotation notation);
 
 class PoseEditor : public QWidget {

@@ -1,5 +1,6 @@
 #include <QCoreApplication>
 #include <QRegularExpression>
+#include <cmath>
 
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
@@ -7,6 +8,8 @@
 namespace seamwright {
 
 namespace {
+
+constexpr double kMostTurn_deg = 360;
 
 // Decimal commas only where nothing else separates: "1,5; 2,5". Otherwise a comma separates.
 std::vector<double> numbers_of(QString text) {
@@ -28,6 +31,16 @@ std::vector<double> numbers_of(QString text) {
     return numbers;
 }
 
+// Lines of a table that are a pose each: two of six numbers are no matrix.
+int poses_of(const QString& text) {
+    int rows = 0;
+    for (const QString& line : text.split('\n', Qt::SkipEmptyParts)) {
+        const std::size_t numbers = numbers_of(line).size();
+        rows += numbers == 6 || numbers == 7;
+    }
+    return rows;
+}
+
 // The unit behind a number that is not the pose's own, which is millimetres and degrees, and radians of a rotation vector.
 QString foreign_unit(const QString& text, PoseNotation notation) {
     static const QRegularExpression lengths(R"([0-9.,]\s*(m|dm|cm|in|inch|ft|µm|um)(?![A-Za-z0-9_]))");
@@ -38,6 +51,13 @@ QString foreign_unit(const QString& text, PoseNotation notation) {
 }
 
 }  // namespace
+
+bool is_of_one_field(const QString& text) {
+    static const QRegularExpression number(R"(\d+([.,]\d*)?|[.,]\d+)");
+    auto found = number.globalMatch(text);
+    if (found.hasNext()) found.next();
+    return !found.hasNext();
+}
 
 QString notation_name(PoseNotation notation) {
     switch (notation) {
@@ -74,6 +94,11 @@ Expected<Pose> pose_from_text(const QString& text, PoseNotation notation) {
             where,
             QCoreApplication::translate("seamwright::PoseEditor", "give millimetres and degrees")
                 .toStdString());
+    if (const auto rows = poses_of(text); rows > 1)
+        return input_error(
+            QCoreApplication::translate("seamwright::PoseEditor", "%n pose(s), one a line", "", rows)
+                .toStdString(),
+            where, QCoreApplication::translate("seamwright::PoseEditor", "give one of them").toStdString());
     if (n.size() == 16 || n.size() == 12) {
         for (std::size_t i = 0; i < n.size(); ++i)
             matrix(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = n[i];
@@ -89,6 +114,16 @@ Expected<Pose> pose_from_text(const QString& text, PoseNotation notation) {
                                         "give 6 numbers, 7 with a quaternion, 12 or 16 as a matrix")
                 .toStdString());
     const Eigen::Vector3d xyz(n[0], n[1], n[2]);
+    const bool degrees = n.size() == 6 && notation != PoseNotation::ur_rotvec;
+    for (std::size_t i = 3; degrees && i < n.size(); ++i)
+        if (std::abs(n[i]) > kMostTurn_deg)
+            return input_error(
+                QCoreApplication::translate("seamwright::PoseEditor", "an angle of %1 degrees")
+                    .arg(n[i], 0, 'g', 6)
+                    .toStdString(),
+                where,
+                QCoreApplication::translate("seamwright::PoseEditor", "give degrees from -360 to 360")
+                    .toStdString());
     Eigen::Matrix3d rotation;
     if (n.size() == 7) {
         SEAM_TRY(const auto turned, rotation_from_abb({n[3], n[4], n[5], n[6]}, where));

@@ -121,7 +121,10 @@ struct SettingsEditor::Impl {
             case SettingKind::whole: {
                 const auto number = number_from_text(text);
                 if (!number) {
-                    why = SettingsEditor::tr("not a number");
+                    why = SettingsEditor::tr("\"%1\" is not a number; give %2 to %3")
+                              .arg(text.left(kTypedSigns))
+                              .arg(s.low)
+                              .arg(s.high);
                 } else if (*number < s.low || *number > s.high) {
                     why = SettingsEditor::tr("outside %1 to %2").arg(s.low).arg(s.high);
                 } else if (s.kind == SettingKind::whole && *number != std::floor(*number)) {

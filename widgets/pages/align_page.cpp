@@ -133,7 +133,7 @@ void AlignPage::do_deed(SpotDeed deed) {
 }
 
 void AlignPage::start() {
-    if (!spot()) return;
+    if (!spot() || !all_is_taken()) return;
     AlignmentOptions options = alignment_options(*spot());
     options.tolerance_mm = tolerance_->value();
     desk_.worker().record_pass(*spot(), step_->value(), options);

@@ -185,11 +185,13 @@ void CalibratePage::refresh() {
     };
     fill(*sensor_, p.sensors);
     fill(*robot_, p.robots);
+    std::vector<std::string> sensors;
+    for (const SensorSetup& s : p.sensors) sensors.push_back(s.id);
     for (auto& [method, button] : begins_) {
         button->setEnabled(sensor_->count() > 0);
-        button->setText(desk_.is_open() &&
-                                CalibrationSession::exists(desk_.path(), MethodId(method),
-                                                           SensorId(sensor_->currentText().toStdString()))
+        button->setText(desk_.is_open() && CalibrationSession::exists(
+                                               desk_.path(), MethodId(method),
+                                               SensorId(sensor_->currentText().toStdString()), sensors)
                             ? tr("Go on")
                             : tr("Begin"));
     }
@@ -235,6 +237,12 @@ void CalibratePage::refresh() {
                         Tone::alarm);
         }
         const bool used = sensor && sensor->calibration_id == c.id;
+        if (const CalibrationMethod* method = find_method(c.method);
+            !used && (c.nozzle || (method && method->use != AnswerUse::sensor))) {
+            box->addWidget(make_text(tr("Kept as a record: nothing is measured with it.")));
+            cards_->addWidget(card);
+            continue;
+        }
         auto* use =
             make_button("use_calibration", "check", used ? tr("In use") : tr("Use"),
                         tr("Measure with this calibration from now on"), [this, id = c.id, s = c.sensor_id] {

@@ -109,7 +109,7 @@ RobotMode CellPage::mode() const {
 
 QString CellPage::take_typed() {
     leave_field(*form_);
-    if (!is_pending()) return {};
+    if (!is_pending()) return StepPage::take_typed();
     if (const QString why = refusal(); !why.isEmpty()) {
         show_refused();
         return not_taken(QString::fromStdString(shown_->id), why) + QChar(0x20) +
@@ -119,7 +119,7 @@ QString CellPage::take_typed() {
         take_back();
         return shown_error(taken.error());
     }
-    return {};
+    return StepPage::take_typed();
 }
 
 // Where it can be mended, or taken back by Esc.

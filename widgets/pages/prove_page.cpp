@@ -74,6 +74,7 @@ void ProvePage::make_zero_shift() {
     add_field(box(), tr("Runs"), count_, tr("How often the unmoved part is measured"));
     start_zero_ = make_button("start_zero", "play", tr("Start zero shift"),
                               tr("Measures; nothing is written to the robot"), [this] {
+                                  if (!all_is_taken()) return;
                                   show_known_ = false;
                                   desk_.worker().zero_shift(count_->value(), desk_.selection().part_type());
                               });
@@ -138,6 +139,7 @@ void ProvePage::make_known_shift() {
     start_known_ =
         make_button("start_known", "shift", tr("Start known shift"),
                     tr("Measures every displacement; nothing is written to the robot"), [this] {
+                        if (!all_is_taken()) return;
                         show_known_ = true;
                         ShiftGrid chosen;
                         chosen.range_mm = range_mm_->value();

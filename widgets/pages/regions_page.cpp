@@ -201,11 +201,25 @@ void RegionsPage::take_encircled(const QStringList& ids) {
 }
 
 void RegionsPage::pick_frame() {
-    picking_ = !picking_;
-    picks_.clear();
-    views_.scene->set_picks(picks_);
+    if (picking_) return end_pick();
+    if (!region()) return;
+    picking_ = true;
+    picks_of_ = subject(region()->id);
     views_.raise(views_.scene);
     say_pick();
+}
+
+void RegionsPage::end_pick() {
+    picking_ = false;
+    picks_.clear();
+    views_.scene->set_picks(picks_);
+    say_pick();
+}
+
+// Half of a frame is nothing to come back to, and the next clicks may be meant for something else.
+void RegionsPage::hideEvent(QHideEvent* event) {
+    if (picking_) end_pick();
+    StepPage::hideEvent(event);
 }
 
 void RegionsPage::say_pick() {
@@ -222,7 +236,7 @@ void RegionsPage::say_pick() {
 }
 
 void RegionsPage::picked(const Eigen::Vector3d& workobject_mm) {
-    if (!picking_ || !region()) return;
+    if (!picking_ || !region() || subject(region()->id) != picks_of_) return;
     picks_.push_back(workobject_mm);
     views_.scene->set_picks(picks_);
     say_pick();
@@ -230,9 +244,7 @@ void RegionsPage::picked(const Eigen::Vector3d& workobject_mm) {
     if (picks_.size() < kPicks) return;
     const auto frame =
         frame_by_three_two_one({picks_[0], picks_[1], picks_[2]}, {picks_[3], picks_[4]}, picks_[5]);
-    picking_ = false;
-    picks_.clear();
-    views_.scene->set_picks(picks_);
+    end_pick();
     if (!frame) return set_verdict(*pick_said_, shown_error(frame.error()), Tone::attention);
     Region r = *region();
     r.base_from_frame = desk_.project().part.base_from_workobject * *frame;
@@ -275,6 +287,7 @@ void RegionsPage::refresh() {
         if (r.id == desk_.selection().region()) list_->setCurrentItem(item);
     }
     const Region* r = region();
+    if (picking_ && (!r || subject(r->id) != picks_of_)) end_pick();
     inspector_->setVisible(r);
     rename_->setEnabled(r);
     remove_->setEnabled(r);

@@ -22,6 +22,7 @@ class RegionsPage : public StepPage {
     void refresh() override;
     QWidget* due() override;
     void entered() override;
+    void hideEvent(QHideEvent* event) override;
 
   private:
     const Region* region() const;
@@ -31,6 +32,7 @@ class RegionsPage : public StepPage {
     // The frame by 3-2-1 from places that are clicked on the part (core/geometry/three_two_one.h).
     void pick_frame();
     void picked(const Eigen::Vector3d& workobject_mm);
+    void end_pick();
     void say_pick();
     QListWidget *list_, *spots_;
     QPushButton *proven_ = nullptr, *rename_, *remove_;
@@ -44,6 +46,7 @@ class RegionsPage : public StepPage {
     BudgetPanel* budget_;
     QLabel* pick_said_;
     bool picking_ = false;
+    std::string picks_of_;  // the region of the project that the frame is picked for
     std::vector<Eigen::Vector3d> picks_;
     bool filling_ = false;
 };

@@ -218,7 +218,7 @@ bool RunPage::eventFilter(QObject* watched, QEvent* event) {
 }
 
 void RunPage::measure(bool push) {
-    if (!desk_.station().connected || desk_.worker().busy()) return;
+    if (!desk_.station().connected || desk_.worker().busy() || !all_is_taken()) return;
     begin();
     desk_.worker().measure(part_->text().trimmed().toStdString(), push, images_->isChecked(),
                            desk_.selection().part_type());

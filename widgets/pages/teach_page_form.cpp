@@ -98,7 +98,8 @@ void TeachPage::make_pose(QVBoxLayout& in) {
                         tr("The pose where the robot stands now"), [this] { take_pose(); });
     go_ = make_button("go_there", "shift", tr("Go there"),
                       tr("Moves the robot straight to the spot: look whether the way is free"), [this] {
-                          if (spot()) desk_.go_to(spot()->robot_id, spot()->base_from_flange);
+                          if (spot() && all_is_taken())
+                              desk_.go_to(spot()->robot_id, spot()->base_from_flange);
                       });
     in.addLayout(make_row({take_, go_,
                            make_button("open_jog", "robot", tr("Jog"), tr("Move the robot by hand (F8)"),
@@ -204,14 +205,14 @@ void TeachPage::make_reference(QVBoxLayout& in) {
     measure_ =
         make_button("measure_reference", "measure", tr("Measure reference"),
                     tr("The robot stands still at the spot and measures; mean and spread are shown"), [this] {
-                        if (spot()) desk_.worker().teach(*spot(), repeats_->value());
+                        if (spot() && all_is_taken()) desk_.worker().teach(*spot(), repeats_->value());
                     });
     confirm_ = make_button(
         "confirm_spot", "check", tr("Confirm"),
         tr("The robot measures the spot from the drawing on the part; where it is plausible, what was "
            "measured becomes its reference"),
         [this] {
-            if (spot()) desk_.worker().confirm(spot()->id);
+            if (spot() && all_is_taken()) desk_.worker().confirm(spot()->id);
         });
     in.addLayout(make_row({measure_, confirm_}));
     spread_ = make_text({});

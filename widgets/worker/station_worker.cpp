@@ -93,14 +93,28 @@ void StationWorker::answer_push(bool yes) {
     wake_.notify_all();
 }
 
-void StationWorker::post(const QString& what, Task task) {
-    post(Loss::result, what, std::move(task));
+void StationWorker::post(const QString& what, Task task, Unserved unserved) {
+    post(Loss::result, what, std::move(task), std::move(unserved));
 }
 
-void StationWorker::post(Loss loss, const QString& what, Task task) {
+void StationWorker::post(Loss loss, const QString& what, Task task, Unserved unserved) {
     const std::lock_guard lock(mutex_);
-    queue_.push_back({what, std::move(task), {}, loss});
+    queue_.push_back({what, std::move(task), {}, loss, std::move(unserved)});
     wake_.notify_all();
+}
+
+Error StationWorker::no_station() const {
+    return open_trouble_ ? *open_trouble_ : usage_error("no project is open", {}, "open or make one").value();
+}
+
+// Whoever asked waits for an answer.
+void StationWorker::refuse(const Request& request) {
+    if (request.unserved)
+        request.unserved(no_station());
+    else
+        tell(&StationWorker::failed,
+             shown_error(tr("\"%1\" was not begun.").arg(request.what), no_station()));
+    emit busy_changed(false, request.what);
 }
 
 std::function<void(const RunProgress&)> StationWorker::progress_sink() {
@@ -274,34 +288,24 @@ void StationWorker::record_pass(const Spot& spot, double step_mm, const Alignmen
 int StationWorker::take_shots(const std::vector<std::string>& sensor_ids, const std::string& robot_id,
                               bool board) {
     const int number = ++shots_asked_;
-    post(tr("Capturing"), [=, this](Station& station, const std::stop_token& cancelled) {
-        auto shots = std::make_shared<CalibrationShots>();
-        for (const std::string& id : sensor_ids) {
-            auto shot = take_shot(station, SensorId(id), RobotId(robot_id), board, cancelled);
-            // A device names its address; among several sensors that is no name.
-            if (!shot && sensor_ids.size() > 1 && shot.error().where != "robot " + robot_id)
-                shot.error().where = "sensor " + id;
-            shots->push_back(std::move(shot));
-        }
-        tell(&StationWorker::shots_taken, std::move(shots), number);
-    });
+    post(
+        tr("Capturing"),
+        [=, this](Station& station, const std::stop_token& cancelled) {
+            auto shots = std::make_shared<CalibrationShots>();
+            for (const std::string& id : sensor_ids) {
+                auto shot = take_shot(station, SensorId(id), RobotId(robot_id), board, cancelled);
+                // A device names its address; among several sensors that is no name.
+                if (!shot && sensor_ids.size() > 1 && shot.error().where != "robot " + robot_id)
+                    shot.error().where = "sensor " + id;
+                shots->push_back(std::move(shot));
+            }
+            tell(&StationWorker::shots_taken, std::move(shots), number);
+        },
+        [this, number](const Error& why) {
+            tell(&StationWorker::shots_taken,
+                 std::make_shared<const CalibrationShots>(1, tl::unexpected(why)), number);
+        });
     return number;
-}
-
-void StationWorker::go_to(const std::string& robot_id, const Pose& base_from_flange) {
-    post(tr("Moving the robot"), [=, this](Station& station, const std::stop_token& cancelled) {
-        const auto move = [&]() -> QString {
-            RobotLink* robot = station.robot(robot_id);
-            if (cancelled.stop_requested()) return tr("The robot was not moved: cancelled.");
-            if (!robot) return tr("The robot is not connected.");
-            auto moved = robot->move_to(base_from_flange);
-            return moved ? QString() : shown_error(tr("The robot was not moved."), moved.error());
-        };
-        const QString trouble = move();
-        if (!trouble.isEmpty() && !cancelled.stop_requested()) tell(&StationWorker::failed, trouble);
-        publish(station);
-        tell(&StationWorker::arrived, robot_id, trouble);
-    });
 }
 
 void StationWorker::search_cameras() {
@@ -309,31 +313,6 @@ void StationWorker::search_cameras() {
         tell(&StationWorker::cameras_found,
              std::make_shared<const std::vector<DiscoveredCamera>>(discover_cameras()));
     });
-}
-
-void StationWorker::jog(const std::string& robot_id, const Pose& base_from_flange) {
-    const std::lock_guard lock(mutex_);
-    if (busy_ || !queue_.empty()) return;
-    jog_request_ = JogRequest{robot_id, base_from_flange};
-    wake_.notify_all();
-}
-
-void StationWorker::stop_jog() {
-    const std::lock_guard lock(mutex_);
-    jog_request_.reset();
-}
-
-void StationWorker::move_by_hand(Station& station, const JogRequest& request) {
-    RobotLink* robot = station.robot(request.robot_id);
-    if (!robot)
-        return tell(&StationWorker::jogged, request.robot_id, request.base_from_flange,
-                    tr("The robot is not connected."));
-    auto moved = robot->move_to(request.base_from_flange);
-    const auto at = robot->base_from_flange();
-    const QString trouble = !moved ? shown_error(tr("The robot was not moved."), moved.error())
-                            : !at  ? shown_error(tr("The robot does not tell where it stands."), at.error())
-                                   : QString();
-    tell(&StationWorker::jogged, request.robot_id, at ? *at : request.base_from_flange, trouble);
 }
 
 void StationWorker::set_sensor_parameter(const std::string& sensor_id, const std::string& name,
@@ -442,12 +421,13 @@ void StationWorker::work(const std::stop_token& stop) {
                 feed_.detach();
                 station_.reset();
                 connect_trouble_.clear();
+                open_trouble_.reset();
                 if (opening) {
                     auto file = ProjectFile::open(opening->first);
                     if (file)
                         station_.emplace(std::move(*file), std::move(opening->second));
                     else
-                        tell(&StationWorker::failed, shown_error(file.error()));
+                        tell(&StationWorker::failed, shown_error(*(open_trouble_ = file.error())));
                 }
                 tell(&StationWorker::state_changed, std::make_shared<const StationState>());
                 lock.lock();
@@ -479,9 +459,15 @@ void StationWorker::work(const std::stop_token& stop) {
         }
         if (!station_) {
             if (request.task) {
-                const std::lock_guard lock(mutex_);
-                busy_ = false;
+                {
+                    const std::lock_guard lock(mutex_);
+                    busy_ = false;
+                }
+                refuse(request);
             }
+            if (by_hand)
+                tell(&StationWorker::jogged, by_hand->robot_id, by_hand->base_from_flange,
+                     shown_error(tr("The robot was not moved."), no_station()));
             next_state = Clock::now() + kRobotPeriod;
             continue;
         }

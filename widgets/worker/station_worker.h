@@ -176,8 +176,11 @@ class StationWorker : public QObject {
             Qt::QueuedConnection);
     }
     enum class Loss { none, result };
-    void post(const QString& what, Task task);
-    void post(Loss loss, const QString& what, Task task);
+    // What is told where there is no station to do it with; none: failed().
+    using Unserved = std::function<void(const Error& why)>;
+    void post(const QString& what, Task task, Unserved unserved = {});
+    void post(Loss loss, const QString& what, Task task, Unserved unserved = {});
+    Error no_station() const;
     void take_project(Station& station, const Project& newest);
     void work(const std::stop_token& stop);
     void start_live(Station& station);
@@ -197,7 +200,9 @@ class StationWorker : public QObject {
         Task task;
         std::stop_source cancel;
         Loss loss = Loss::result;
+        Unserved unserved;
     };
+    void refuse(const Request& request);
     std::deque<Request> queue_;
     struct JogRequest {
         std::string robot_id;
@@ -219,6 +224,7 @@ class StationWorker : public QObject {
     std::unique_ptr<LiveSensors> live_;
     std::vector<SensorState> sensors_;  // as last seen
     std::optional<Station> station_;
+    std::optional<Error> open_trouble_;  // why there is no station although a project is open
     Text connect_trouble_;
     int connection_ = 0;
     std::jthread thread_;

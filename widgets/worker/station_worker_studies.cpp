@@ -56,8 +56,8 @@ void StationWorker::measure_study(const LiveStudyOptions& asked) {
         if (!put)
             return tell(&StationWorker::failed, shown_error(tr("The part was not put in."), put.error()));
         if (!progress)
-            return emit failed(
-                shown_error(tr("The study was not measured."), without_option(progress.error())));
+            return tell(&StationWorker::failed,
+                        shown_error(tr("The study was not measured."), without_option(progress.error())));
         tell(&StationWorker::proven);
         tell(&StationWorker::studied, std::make_shared<const StudyProgress>(std::move(*progress)));
     });

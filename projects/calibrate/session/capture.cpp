@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 
 #include "core/calibration/board/board.h"
 #include "core/calibration/camera/camera.h"
@@ -17,6 +16,7 @@
 #include "projects/calibrate/input/stripe_line_points.h"
 #include "projects/calibrate/methods/cameras/stripe_frames.h"
 #include "projects/calibrate/session/apex_pair.h"
+#include "projects/calibrate/session/capture_file.h"
 #include "projects/calibrate/session/sphere_sight.h"
 #include "projects/calibrate/solution/camera_json.h"
 #include "projects/measure/measure.h"
@@ -309,54 +309,6 @@ Expected<TakenCapture> capture_shot(const CalibrationMethod& method, const json&
     return taken;
 }
 
-namespace {
-
-Expected<ReadCaptures> read_json_captures(const CalibrationMethod& method, const json& settings,
-                                          const std::filesystem::path& path) {
-    SEAM_TRY(auto data, read_json_file(path));
-    if (!data.is_object()) return input_error("the data is not a JSON object", path.string());
-    ReadCaptures read;
-    read.settings = settings;
-    json entries;
-    const bool chains = method.capture == CaptureKind::board_chain;
-    const bool single = chains && !data.contains(method.entries);
-    constexpr const char* kReference = "reference_from_world";
-    if (chains) read.settings.erase(kReference);  // those of a file end where the file says
-    if (single) {
-        if (data.contains(kReference)) read.settings[kReference] = data[kReference];
-        data.erase(kReference);
-        entries = json::array({data});
-    } else {
-        SEAM_TRY(auto list, json_array(data, method.entries, path.string()));
-        entries = *list;
-        data.erase(method.entries);
-        read.settings.update(data);
-    }
-    std::set<std::string> sensors;
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-        CalibrationCapture c;
-        const json& entry = entries[i];
-        if (entry.is_object()) {
-            SEAM_TRY(auto id, entry_id(entry, i, json_path(method.entries, i)));
-            if (!single || entry.contains("id")) c.id = id;
-            if (entry.contains("base_from_flange") && !entry["base_from_flange"].is_null()) {
-                SEAM_TRY(auto pose, parse_pose(entry["base_from_flange"],
-                                               json_path(json_path(method.entries, i), "base_from_flange")));
-                c.base_from_flange = pose;
-            }
-        }
-        c.entry = entry;
-        c.origin = path.string();
-        if (chains && !sensors.insert(sensor_of_chain(c)).second)
-            return input_error(Text("the id '{}' occurs twice", sensor_of_chain(c)), path.string(),
-                               "give each sensor one chain");
-        read.captures.push_back(std::move(c));
-    }
-    return read;
-}
-
-}  // namespace
-
 bool reads_images(const CalibrationMethod& method) {
     return method.capture == CaptureKind::board_and_stripe || method.capture == CaptureKind::board_pose ||
            method.capture == CaptureKind::board_view;
@@ -366,7 +318,7 @@ Expected<ReadCaptures> read_captures(const CalibrationMethod& method, const json
                                      const Calibration* base, const std::filesystem::path& path,
                                      const ReadProgress& progress, const std::stop_token& cancel) {
     std::error_code code;
-    if (!std::filesystem::is_directory(path, code)) return read_json_captures(method, settings, path);
+    if (!std::filesystem::is_directory(path, code)) return read_capture_file(method, settings, path);
     if (!reads_images(method))
         return input_error("this method reads no images", path.string(), "give its JSON file");
     SEAM_TRY(auto spec, board_of(settings));

@@ -90,32 +90,8 @@ fs::path CalibrationSession::folder_of(const fs::path& project_file) {
     return fs::path(project_file.string() + ".calibration");
 }
 
-namespace {
-
-Expected<void> rename_folder(const fs::path& from, const fs::path& to) {
-    std::error_code code;
-    fs::rename(from, to, code);
-    if (code) return file_error(Text("the folder cannot be moved: {}", code.message()), from.string());
-    return {};
-}
-
-// Where it went; empty: there was none.
-Expected<fs::path> rename_aside(const fs::path& folder) {
-    std::error_code code;
-    if (!fs::exists(folder, code)) return fs::path();
-    std::string time = utc_now();
-    std::replace(time.begin(), time.end(), ':', '.');
-    const std::string aside = folder.string() + "-" + time;
-    fs::path to = aside;
-    for (int n = 2; fs::exists(to, code); ++n) to = fmt::format("{}-{}", aside, n);
-    SEAM_OK(rename_folder(folder, to));
-    return to;
-}
-
-}  // namespace
-
 Expected<void> CalibrationSession::put_aside(const fs::path& project_file) {
-    SEAM_OK(rename_aside(folder_of(project_file)));
+    SEAM_OK(put_folder_aside(folder_of(project_file)));
     return {};
 }
 
@@ -130,24 +106,35 @@ Expected<void> CalibrationSession::copy_all(const fs::path& from_project, const 
     return {};
 }
 
-bool CalibrationSession::exists(const fs::path& project_file, const MethodId& method,
-                                const SensorId& sensor) {
+namespace {
+
+std::vector<std::string> without(std::vector<std::string> names, const std::string& one) {
+    std::erase(names, one);
+    return names;
+}
+
+}  // namespace
+
+bool CalibrationSession::exists(const fs::path& project_file, const MethodId& method, const SensorId& sensor,
+                                const std::vector<std::string>& sensors) {
     std::error_code code;
-    return fs::exists(session_folder(project_file, method, sensor, {}) / "session.json", code);
+    return fs::exists(
+        session_folder(project_file, method, sensor, {without(sensors, sensor.text()), {}}) / "session.json",
+        code);
 }
 
 Expected<CalibrationSession> CalibrationSession::open(const fs::path& project_file, const MethodId& method,
                                                       const SensorId& sensor, const RobotId& robot,
-                                                      const std::vector<std::string>& robots) {
+                                                      const std::vector<std::string>& robots,
+                                                      const std::vector<std::string>& sensors) {
     CalibrationSession s;
     s.method_ = find_method(method.text());
     if (!s.method_)
         return usage_error(Text("the calibration method '{}' is unknown", method.text()), "method");
     s.sensor_id_ = sensor.text();
     s.robot_id_ = robot.text();
-    std::vector<std::string> others = robots;
-    std::erase(others, robot.text());
-    s.folder_ = session_folder(project_file, method, sensor, others);
+    s.folder_ = session_folder(project_file, method, sensor,
+                               {without(sensors, sensor.text()), without(robots, robot.text())});
     s.state_.settings = default_settings(*s.method_);
     std::error_code code;
     if (fs::exists(s.folder_ / "session.json", code)) SEAM_OK(s.read());
@@ -178,6 +165,7 @@ Expected<void> CalibrationSession::read() {
         for (const json& id : used->is_array() ? *used : json::array({*used}))
             if (id.is_string() && !id.get_ref<const std::string&>().empty()) used_as_.push_back(id);
     }
+    former_sensors_ = former_sensors(*data, sensor_id_);
     last_number_ = whole(*data, "last_number");
     for (const json& mark : **captures) {
         const auto marked = [&](const char* key) {
@@ -220,6 +208,7 @@ Expected<void> CalibrationSession::write_list(const SessionState& state,
                                                           {"version", kVersion},
                                                           {"method", method_->id},
                                                           {"sensor", sensor_id_},
+                                                          {"former_sensors", former_sensors_},
                                                           {"robot", robot_id_},
                                                           {"settings", state.settings},
                                                           {"captures", marks_json(state)},
@@ -436,7 +425,7 @@ Expected<void> CalibrationSession::set_used_as(std::vector<std::string> calibrat
 }
 
 Expected<fs::path> CalibrationSession::begin_anew() {
-    SEAM_TRY(auto parked, rename_aside(folder_));
+    SEAM_TRY(auto parked, put_folder_aside(folder_));
     state_.captures.clear();
     last_number_ = 0;
     solution_.reset();
@@ -449,9 +438,9 @@ Expected<void> CalibrationSession::exchange(fs::path& parked) {
     std::error_code code;
     if (parked.empty() || !fs::exists(parked / "session.json", code))
         return file_error("the session that was put aside is no longer there", parked.string());
-    SEAM_TRY(auto aside, rename_aside(folder_));
-    if (auto ok = rename_folder(parked, folder_); !ok) {
-        if (!aside.empty()) (void)rename_folder(aside, folder_);
+    SEAM_TRY(auto aside, put_folder_aside(folder_));
+    if (auto ok = move_folder(parked, folder_); !ok) {
+        if (!aside.empty()) (void)move_folder(aside, folder_);
         return ok;
     }
     CalibrationSession other = *this;

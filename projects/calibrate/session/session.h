@@ -83,12 +83,13 @@ class CalibrationSession {
   public:
     // The unfinished or finished session of this sensor and method, or a new one. Error (file): the folder
     // cannot be written, a session.json that is none. A capture file that is missing or damaged is left out
-    // of the list and named in notices(). `robots`: the project's; what was captured with another of them is that one's
-    // session, and what was with one that is none of them goes on, the robot has another name now.
+    // of the list and named in notices(). `robots`, `sensors`: the project's; what was captured with another of them is that
+    // one's session, and what was with a robot that is none of them goes on, the robot has another name now.
     static Expected<CalibrationSession> open(const std::filesystem::path& project_file,
                                              const MethodId& method, const SensorId& sensor,
                                              const RobotId& robot,
-                                             const std::vector<std::string>& robots = {});
+                                             const std::vector<std::string>& robots = {},
+                                             const std::vector<std::string>& sensors = {});
     static std::filesystem::path folder_of(const std::filesystem::path& project_file);
     // Sessions go with their project: copied when it is saved under another name, put aside under their time
     // when another project takes the file's place. Nothing to do is no Error.
@@ -97,7 +98,15 @@ class CalibrationSession {
     static Expected<void> put_aside(const std::filesystem::path& project_file);
     // True when open() would find captures.
     static bool exists(const std::filesystem::path& project_file, const MethodId& method,
-                       const SensorId& sensor);
+                       const SensorId& sensor, const std::vector<std::string>& sensors = {});
+    // All sessions of the project say from here on that the device is called `to`, chains of a gripper's shot with them. What
+    // a sensor of that name has left that is gone is put aside. A session that is open: renamed().
+    static Expected<void> rename_sensor(const std::filesystem::path& project_file, const std::string& from,
+                                        const std::string& to, const std::vector<std::string>& other_sensors);
+    static Expected<void> rename_robot(const std::filesystem::path& project_file, const std::string& from,
+                                       const std::string& to);
+    // This one, after rename_sensor() or rename_robot(); not where captures name sensors (board_chain): open() that anew.
+    void renamed(const std::string& sensor, const std::string& robot);
 
     const CalibrationMethod& method() const { return *method_; }
     const std::string& sensor_id() const { return sensor_id_; }
@@ -154,6 +163,7 @@ class CalibrationSession {
 
     const CalibrationMethod* method_ = nullptr;
     std::string sensor_id_, robot_id_;
+    std::vector<std::string> former_sensors_;  // names that the sensor had
     std::vector<std::string> used_as_;
     std::filesystem::path folder_;
     SessionState state_;

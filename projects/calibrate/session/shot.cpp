@@ -10,6 +10,7 @@
 #include "devices/registry.h"
 #include "devices/simulated/cell.h"
 #include "projects/calibrate/session/capture.h"
+#include "projects/calibrate/session/capture_file.h"
 #include "projects/measure/measure.h"
 #include "projects/station/acquire.h"
 
@@ -144,7 +145,13 @@ ShotCaptures captures_of_shots(const CalibrationSession& session, const Project&
             continue;
         }
         const SensorSetup* sensor = find_sensor(project, shot->sensor_id);
-        if (!sensor) continue;
+        if (!sensor) {  // removed or renamed while its picture was taken
+            taken.refusals.push_back(input_error("the project has no such sensor",
+                                                 Text("sensor {}", shot->sensor_id),
+                                                 "undo its removal, or go back and choose another")
+                                         .value());
+            continue;
+        }
         auto one =
             capture_shot(session.method(), taken.settings, *sensor, calibration_of(project, sensor->id),
                          *shot->stripe, shot->board.get(), shot->base_from_flange);
@@ -183,8 +190,19 @@ Expected<void> add_captures(CalibrationSession& session, std::vector<Calibration
             return input_error("the chains before end in another reference", session.method().id,
                                "begin anew, or remove them");
     }
-    SEAM_OK(session.set_settings(std::move(settings)));
+    // A chain takes the place of its like; anything else would count twice.
+    const std::size_t all = captures.size();
+    std::size_t known = 0;
+    if (session.method().capture != CaptureKind::board_chain) {
+        NewCaptures fresh = without_known(session.state(), std::move(captures));
+        captures = std::move(fresh.captures);
+        known = fresh.known;
+    }
+    if (!captures.empty()) SEAM_OK(session.set_settings(std::move(settings)));
     for (CalibrationCapture& capture : captures) SEAM_OK(session.add(std::move(capture), verification));
+    if (known > 0)
+        return input_error(Text("{} of {} captures are in the list already", known, all), session.method().id,
+                           "they are not taken a second time");
     return {};
 }
 

@@ -47,7 +47,8 @@ ShotCaptures captures_of_shots(const CalibrationSession& session, const Project&
                                nlohmann::json settings, const CalibrationShots& shots,
                                const std::stop_token& cancel);
 
-// Error (input): chains in the session end in another frame than these. What was added before a file's Error stays.
+// Error (input): chains in the session end in another frame than these; some are in the list already and were left out. What
+// was added before a file's Error stays.
 Expected<void> add_captures(CalibrationSession& session, std::vector<CalibrationCapture> captures,
                             nlohmann::json settings, bool verification);
 

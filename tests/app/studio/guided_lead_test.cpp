@@ -132,23 +132,34 @@ TEST_F(GuidedLead, WithoutDevicesEveryMethodSaysSoAndLeadsToThem) {
         << view->accessibleDescription().toStdString();
 }
 
-// A sensor or robot that was renamed or removed beneath the page.
+// A sensor or robot that was renamed or removed beneath the page: followed there, named here.
 TEST_F(GuidedLead, ADeviceThatIsGoneIsNamed) {
     begin();
+    const auto stage = [&](const char* words) {
+        return me->wait([&] { return me->text_of("calibration_stage").contains(words); });
+    };
     for (const bool sensor : {true, false}) {
-        ASSERT_TRUE(sensor ? desk().rename<SensorSetup>("A", "left")
-                           : desk().rename<RobotSetup>("R1", "big"));
-        EXPECT_TRUE(me->wait([&] {
-            return me->text_of("calibration_stage")
-                .contains(sensor ? "Sensor A is not in the project any more"
-                                 : "Robot R1 is not in the project any more");
-        }));
+        ASSERT_TRUE(sensor ? desk().remove<SensorSetup>("A") : desk().remove<RobotSetup>("R1"));
+        EXPECT_TRUE(stage(sensor ? "Sensor A is not in the project any more"
+                                 : "Robot R1 is not in the project any more"));
         desk().undo_stack().undo();
         EXPECT_TRUE(me->wait([&] { return !me->text_of("calibration_stage").contains("any more"); }));
-        EXPECT_TRUE(desk().station().connected);
     }
-    ASSERT_TRUE(me->wait(
-        [&] { return window().findChild<QPushButton*>("calibration_lead")->text() == "Set up the target"; }));
+    me->click("calibration_set_target");
+    capture(*me, desk());
+    ASSERT_FALSE(HasFailure());
+    ASSERT_TRUE(desk().rename<SensorSetup>("A", "left"));
+    ASSERT_TRUE(desk().rename<RobotSetup>("R1", "big"));
+    EXPECT_TRUE(me->wait([&] {
+        auto* who = me->find<QLabel>("calibration_who");
+        return who && who->text().startsWith("Sensor left on robot big");
+    }));
+    EXPECT_FALSE(me->text_of("calibration_stage").contains("any more"));
+    EXPECT_TRUE(desk().station().connected);
+    me->click("calibration_back");
+    EXPECT_EQ(me->find<QPushButton>("begin_tcp-sphere")->text(), "Go on");
+    me->click("begin_tcp-sphere");
+    EXPECT_EQ(captures(*me), 1) << "captured under the former name";
 }
 
 // A robot that scatters much: what was captured does not serve, and the key that is marked captures more, round by round;

@@ -259,6 +259,40 @@ TEST_F(AtTheDesk, ARecordedPassIsAcceptedNext) {
     FAIL() << "no pass could be accepted";
 }
 
+// The robot does not set out with the number before the one that was typed, unless somebody presses again.
+TEST_F(AtTheDesk, ARefusedNumberBeginsNothing) {
+    connected();
+    DeskPerson me(window());
+    const auto typed = [&](const char* field, const char* text, const char* key) {
+        auto* box = me.find<QDoubleSpinBox>(field);
+        me.look_at(box);
+        box->setFocus();
+        box->selectAll();
+        QTest::keyClicks(box, text);
+        me.click(key);
+        QTest::qWait(100);
+    };
+    const auto told = [&](const char* words) {
+        auto* line = window().findChild<QLabel*>("trouble_text");
+        return line && line->isVisible() && line->text().contains(words);
+    };
+    me.step(4);
+    desk().selection().select_spot(project().spots.front().id);
+    QTest::qWait(50);
+    typed("pass_step", "1e300", "start_pass");
+    EXPECT_FALSE(desk().worker().busy());
+    EXPECT_TRUE(told("\"1e300\" is refused")) << "and what to do";
+    EXPECT_TRUE(told("press again"));
+    me.click("start_pass");
+    EXPECT_TRUE(me.wait([&] { return desk().worker().busy(); }));
+    desk().worker().cancel();
+    ASSERT_TRUE(idle());
+    me.step(6);
+    typed("shift_range_mm", "abc", "start_known");
+    EXPECT_FALSE(desk().worker().busy());
+    EXPECT_TRUE(told("\"abc\" is refused"));
+}
+
 TEST_F(AtTheDesk, ARecordedPassWaitsWhileAnotherSpotIsLookedAt) {
     connected();
     DeskPerson me(window());

@@ -89,6 +89,20 @@ TEST_F(Furniture, WhatIsTypedIsSaved) {
     me.shortcut(Qt::Key_S);
     EXPECT_TRUE(editor()->refused());
     EXPECT_TRUE(desk.modified()) << "nothing is saved while a value is refused";
+    // Wherever the focus is, and on whatever step: the field still holds what would not be saved.
+    const auto refused = [&] { return editor() && editor()->refused(); };
+    window().setFocus();
+    me.shortcut(Qt::Key_S);
+    EXPECT_TRUE(desk.modified());
+    ASSERT_TRUE(refused());
+    me.step(6);
+    me.shortcut(Qt::Key_S);
+    EXPECT_TRUE(desk.modified());
+    EXPECT_EQ(window().step(), Step::teach) << "where it is mended";
+    EXPECT_TRUE(me.wait([&] { return refused() && !editor()->visibleRegion().isEmpty(); }));
+    QTest::keyClick(editor()->findChild<QLineEdit*>(), Qt::Key_Escape);
+    me.shortcut(Qt::Key_S);
+    EXPECT_FALSE(desk.modified());
 }
 
 TEST_F(Furniture, ASpotFromTheDrawingIsConfirmedOnThePart) {
@@ -207,6 +221,27 @@ TEST_F(Furniture, AFrameIsPickedOnThePartByThreeTwoOne) {
     click(top.first);
     EXPECT_EQ(desk.project().regions.front().base_from_frame.matrix(), before.base_from_frame.matrix())
         << "a click after it is no pick";
+    // Begun for one region, it is neither ended for another nor after a look at another step.
+    ASSERT_GE(desk.project().regions.size(), 2U);
+    const Project untouched = desk.project();
+    const auto begin = [&] {
+        desk.selection().select_region(before.id);
+        QTest::qWait(50);
+        me.click("pick_frame");
+        for (const auto& at : {left, right, top}) click(at.first);
+    };
+    begin();
+    desk.selection().select_region(desk.project().regions[1].id);
+    QTest::qWait(50);
+    for (const auto& at : {left, right, top}) click(at.first);
+    EXPECT_EQ(desk.project().regions[1].base_from_frame.matrix(),
+              untouched.regions[1].base_from_frame.matrix());
+    EXPECT_EQ(me.text_of("pick_said"), "") << "it says that nothing is picked any more";
+    begin();
+    me.step(4);
+    me.step(5);
+    for (const auto& at : {left, right, top}) click(at.first);
+    EXPECT_EQ(desk.project().regions.front().base_from_frame.matrix(), before.base_from_frame.matrix());
 }
 
 TEST_F(Furniture, ViaPointsAreAddedWhereTheRobotStandsAndTakenOut) {

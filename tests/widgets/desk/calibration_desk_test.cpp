@@ -7,6 +7,7 @@
 
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/cell.h"
+#include "projects/calibrate/session/answer.h"
 #include "projects/measure/measure.h"
 #include "projects/reuse/simulated_truth.h"
 #include "tests/widgets/desk/desk_fixture.h"
@@ -166,6 +167,50 @@ TEST_F(OneShotAtTheDesk, WhereNoneSeesTheBoardNothingIsStored) {
     for (const char* id : {"sensor A", "sensor B", "sensor G"}) EXPECT_THAT(said(), HasSubstr(id));
     EXPECT_FALSE(calibration.undo_stack().canUndo());
     EXPECT_FALSE(calibration.finish(true));
+}
+
+// What was cancelled answers too, before what was asked for afterwards.
+TEST_F(OneShotAtTheDesk, TheAnswerToACancelledCaptureIsNotThatToTheNext) {
+    connect_and_stand(start);
+    ASSERT_TRUE(wait_until([&] { return !calibration.busy(); }));
+    calibration.capture(false);
+    calibration.cancel();
+    shoot();
+    EXPECT_EQ(captured(), (std::vector<std::string>{"A", "B"})) << said();
+    ASSERT_EQ(refusals.size(), 1) << said();
+    EXPECT_THAT(said(), HasSubstr("sensor G"));
+}
+
+// The chains name their sensors, and the list on the disk does.
+TEST_F(OneShotAtTheDesk, RenamedSensorsAndRobotsKeepTheirCaptures) {
+    connect_and_stand(start);
+    shoot();
+    ASSERT_TRUE(wait_until([&] { return calibration.session().solution() != nullptr; })) << said();
+    ASSERT_TRUE(desk.rename<SensorSetup>("B", "right"));
+    ASSERT_TRUE(desk.rename<SensorSetup>("A", "left"));
+    ASSERT_TRUE(desk.rename<RobotSetup>("R1", "big"));
+    EXPECT_EQ(calibration.session().sensor_id(), "left");
+    EXPECT_EQ(calibration.session().robot_id(), "big");
+    ASSERT_TRUE(wait_until([&] { return calibration.session().solution() != nullptr; })) << said();
+    const auto made = calibrations_of_session(calibration.session(), desk.project());
+    ASSERT_TRUE(made) << made.error().sentence();
+    EXPECT_EQ(made->at(0).sensor_id, "left");
+    EXPECT_EQ(made->at(1).sensor_id, "right");
+    EXPECT_EQ(made->at(0).robot_id, "big");
+    calibration.close();
+    ASSERT_TRUE(calibration.open(MethodId("static"), SensorId("left"), RobotId("big")));
+    EXPECT_EQ(captured().size(), 2U);
+    for (int i = 0; i < 3; ++i) desk.undo_stack().undo();
+    EXPECT_EQ(calibration.session().sensor_id(), "A");
+    EXPECT_EQ(captured().size(), 2U);
+    EXPECT_TRUE(calibrations_of_session(calibration.session(), desk.project()));
+    desk.undo_stack().redo();
+    // The names are not saved.
+    calibration.close();
+    ASSERT_TRUE(desk.open(folder / "a.seam"));
+    ASSERT_TRUE(calibration.open(MethodId("static"), SensorId("A"), RobotId("R1")));
+    EXPECT_EQ(captured().size(), 2U);
+    EXPECT_TRUE(me.troubles.empty()) << me.troubles.join("; ").toStdString();
 }
 
 // A chain that stays must end where the new ones do.

@@ -231,6 +231,62 @@ TEST(RenamedDevices, AreNeverMixedUp) {
     EXPECT_FALSE(station.connected());
 }
 
+// Where there is no station, whoever asks hears why, and nobody waits for ever.
+TEST(WithoutAStation, EveryRequestIsAnswered) {
+    TemporaryFolder folder;
+    WatchedDesk me;
+    StationWorker& worker = me.desk.worker();
+    QStringList failures;  // the desk says them, and that it cannot note them in a file that has gone
+    QObject::connect(&worker, &StationWorker::failed, &me.desk,
+                     [&](const QString& said) { failures << said; });
+    const auto one_sentence = [&](const char* why) {
+        ASSERT_TRUE(wait_until([&] { return !failures.isEmpty() && !worker.busy(); }))
+            << "nobody heard of it";
+        EXPECT_EQ(failures.size(), 1) << failures.join("; ").toStdString();
+        EXPECT_THAT(failures.join("; ").toStdString(), HasSubstr(why));
+        failures.clear();
+    };
+    int ended = 0;
+    QObject::connect(&worker, &StationWorker::busy_changed, &me.desk, [&](bool busy) { ended += !busy; });
+    const auto ask_for_everything = [&](const char* why) {
+        worker.connect_devices();
+        one_sentence(why);
+        worker.measure("part", false, false);
+        one_sentence(why);
+        EXPECT_TRUE(wait_until([&] { return ended == 2; })) << "whoever shows that it runs waits for its end";
+        QString trouble;
+        QObject here;
+        QObject::connect(&worker, &StationWorker::arrived, &here,
+                         [&](const std::string&, const QString& said) { trouble = said; });
+        worker.go_to("R1", Pose::Identity());
+        one_sentence(why);
+        EXPECT_THAT(trouble.toStdString(), HasSubstr(why));
+        std::shared_ptr<const CalibrationShots> taken;
+        int number = 0;
+        QObject::connect(&worker, &StationWorker::shots_taken, &here, [&](const auto& shots, int of) {
+            taken = shots;
+            number = of;
+        });
+        const int asked = worker.take_shots({"A"}, "R1", false);
+        ASSERT_TRUE(wait_until([&] { return taken != nullptr; })) << "a capture waits for ever";
+        EXPECT_EQ(number, asked);
+        ASSERT_EQ(taken->size(), 1U);
+        ASSERT_FALSE(taken->at(0));
+        EXPECT_THAT(taken->at(0).error().sentence(), HasSubstr(why));
+        ended = 0;
+    };
+    ask_for_everything("no project is open");
+    // The project is on the screen, but its file has gone from under the station.
+    const auto file = folder / "a.seam";
+    ASSERT_TRUE(me.desk.create(file, side_of_a_door()));
+    worker.close();
+    std::filesystem::remove(file);
+    worker.open(file, me.desk.project());
+    one_sentence("a.seam");
+    ended = 0;
+    ask_for_everything("a.seam");
+}
+
 TEST_F(Cancelling, ARunStopsAtOnceAndIsKeptAsCancelled) {
     teach_all();
     bool cancelled = false;

@@ -81,6 +81,7 @@ void GuidedPage::make_head() {
 void GuidedPage::make_prepare(QVBoxLayout& box) {
     QVBoxLayout* inside = nullptr;
     who_ = make_text({});
+    who_->setObjectName("calibration_who");
     box.addWidget(who_);
     prepare_ = holder(box, inside);
     auto* row = new QHBoxLayout;
@@ -116,8 +117,7 @@ void GuidedPage::make_capture(QVBoxLayout& box) {
     inside->addWidget(target_);
     capture_ = make_button("calibration_capture", "target", tr("Capture"),
                            tr("Takes picture and robot pose; the robot must stand still"), [this] {
-                               said_->hide();
-                               calibration_.capture(false);
+                               if (take_typed()) calibration_.capture(false);
                            });
     automatic_ =
         make_button("calibration_automatic", "play", tr("By itself"),
@@ -129,7 +129,7 @@ void GuidedPage::make_capture(QVBoxLayout& box) {
         tr("Sends the robot straight to one proposed pose after the other and captures there: look "
            "whether the ways are free"),
         [this] {
-            said_->hide();
+            if (!take_typed()) return;
             calibration_.set_automatic(false);
             series_.start();
         });
@@ -235,8 +235,7 @@ void GuidedPage::make_verdict(QVBoxLayout& box) {
     robot_deg_ = editor("robot_deg", tr("Repeatability of its turn"), "deg", 5, 4);
     solve_ =
         make_button("calibration_solve", "measure", tr("Solve"), tr("Solves with the ticked poses"), [this] {
-            said_->hide();
-            calibration_.solve();
+            if (take_typed()) calibration_.solve();
         });
     detect_ = make_button(
         "detect_convention", "search", tr("Which convention?"),
@@ -270,8 +269,7 @@ void GuidedPage::make_use(QVBoxLayout& box) {
     inside->addWidget(verified_);
     verify_ = make_button("calibration_verify", "prove", tr("Capture for verification"),
                           tr("A pose that takes no part in the solution judges it"), [this] {
-                              said_->hide();
-                              calibration_.capture(true);
+                              if (take_typed()) calibration_.capture(true);
                           });
     inside->addLayout(make_row({verify_}));
     stands_ = make_text({});
@@ -284,11 +282,13 @@ void GuidedPage::make_use(QVBoxLayout& box) {
     box.addWidget(compared_);
     box.addWidget(used_);
     use_ = make_button("calibration_use", "check", tr("Use this calibration"),
-                       tr("Measure with it from now on; the one before stays selectable"),
-                       [this] { done(calibration_.finish(true)); });
+                       tr("Measure with it from now on; the one before stays selectable"), [this] {
+                           if (take_typed()) done(calibration_.finish(true));
+                       });
     keep_ = make_button("calibration_keep", "save", tr("Keep beside"),
-                        tr("Puts it into the project without using it"),
-                        [this] { done(calibration_.finish(false)); });
+                        tr("Puts it into the project without using it"), [this] {
+                            if (take_typed()) done(calibration_.finish(false));
+                        });
     anew_ = make_button("calibration_anew", "new", tr("Begin anew"),
                         tr("Puts these captures aside, on disk, and begins with none; undo brings them back"),
                         [this] { done(calibration_.begin_anew()); });

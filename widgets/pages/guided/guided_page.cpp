@@ -16,7 +16,9 @@
 #include "devices/registry.h"
 #include "devices/simulated/cell.h"
 #include "projects/measure/measure.h"
+#include "widgets/editors/leave_field.h"
 #include "widgets/editors/parameter_editor.h"
+#include "widgets/into_view.h"
 #include "widgets/pages/parts/form.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
@@ -80,6 +82,17 @@ GuidedPage::GuidedPage(Desk& desk) : desk_(desk), calibration_(desk), series_(de
 bool GuidedPage::done(const Expected<void>& result) {
     if (result) return true;
     say(shown_error(result.error()));
+    return false;
+}
+
+// Nobody solves or stores with the number before the one that stands in the field.
+bool GuidedPage::take_typed() {
+    said_->hide();
+    QWidget* refused = refused_field(*this);
+    if (!refused) return true;
+    say(tr("A value is refused: mend it, or press Esc in its field."));
+    bring_into_view(refused);
+    refused->setFocus(Qt::OtherFocusReason);
     return false;
 }
 

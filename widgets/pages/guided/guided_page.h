@@ -79,6 +79,7 @@ class GuidedPage : public QWidget {
     void lead();       // presses it
     void keep_focus(bool busy);
     void say(const QString& sentence);
+    bool take_typed();  // false: a field of this page holds what it refused, which is said
     bool first_in_doubt() const;
     void show_target(bool target);  // before the simulated sensor, or its part again
     void state_repeatability();

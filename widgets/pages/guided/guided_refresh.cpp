@@ -153,7 +153,8 @@ void GuidedPage::refresh_settings() {
                                                   s.folder().string());
     }
     nominal_holder_->setVisible(s.method().robot && s.method().use == AnswerUse::sensor);
-    if (const auto mounting = calibration_.mounting()) nominal_->refresh(*mounting, s.folder().string());
+    // Where it is not known, that of the sensor before does not stay.
+    nominal_->refresh(calibration_.mounting().value_or(Pose::Identity()), s.folder().string());
     refresh_base();
 }
 

@@ -4,6 +4,8 @@
 #include <QTimer>
 
 #include "projects/proof/known_shift.h"
+#include "widgets/editors/leave_field.h"
+#include "widgets/editors/number_box.h"
 #include "widgets/into_view.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
@@ -63,6 +65,17 @@ void StepPage::showEvent(QShowEvent* event) {
     later();
 }
 
+QString StepPage::take_typed() {
+    QWidget* refused = refused_field(*this);
+    return refused ? point_at(*refused) : QString();
+}
+
+QString StepPage::point_at(QWidget& refused) const {
+    bring_into_view(&refused);
+    refused.setFocus(Qt::OtherFocusReason);
+    return tr("A value is refused: mend it, or press Esc in its field.");
+}
+
 // Several changes in one turn of the event loop are one refresh.
 void StepPage::later() {
     if (due_ || !isVisible()) return;
@@ -97,6 +110,18 @@ void StepPage::fit_head() {
 bool StepPage::done(const Expected<void>& result) {
     if (!result) emit desk_.trouble(shown_error(result.error()));
     return result.has_value();
+}
+
+bool StepPage::all_is_taken() {
+    for (StepPage* page : window()->findChildren<StepPage*>())
+        if (QWidget* refused = refused_field(*page, false)) {
+            if (page != this) emit step_wanted(page->step());
+            emit desk_.trouble(page->point_at(*refused));
+            return false;
+        }
+    const QString why = take_refused_number(*this);
+    if (!why.isEmpty()) emit desk_.trouble(why);
+    return why.isEmpty();
 }
 
 bool StepPage::done_or_shown(const Expected<void>& result) {

@@ -24,7 +24,7 @@ class StepPage : public QWidget {
     virtual void point_out();
     // Before the project is saved, left or connected: what was typed here and waits for a key of the page counts. Empty, or
     // why it is refused.
-    virtual QString take_typed() { return {}; }
+    virtual QString take_typed();
 
   signals:
     void step_wanted(seamwright::Step step);
@@ -44,6 +44,9 @@ class StepPage : public QWidget {
     bool done(const Expected<void>& result);
     // The same, and what was ticked or chosen shows again what is.
     bool done_or_shown(const Expected<void>& result);
+    // Before a motion: false, and said, where a page holds what it has refused, so that the robot would go by another number
+    // than the one that stands there.
+    bool all_is_taken();
     // A part's name in the window's language, where no person gave it: "run 3", "zero shift 1".
     static QString shown_part(const std::string& id);
     // "Y +5 mm and +0.5 deg".
@@ -60,6 +63,7 @@ class StepPage : public QWidget {
     void later();
     void fit_head();
     void let_edit();  // only a project that is there
+    QString point_at(QWidget& refused) const;
     Step step_;
     QVBoxLayout* box_;
     QLabel *title_, *state_;

@@ -32,6 +32,7 @@ class GuidedWrong : public Guided {
         return label && label->isVisible() ? label->text() : QString();
     }
     void load(const fs::path& path) {
+        EXPECT_TRUE(me->wait([&] { return !calibration().busy(); }));  // of solving what was undone
         if (auto* label = window().findChild<QLabel*>("calibration_said")) label->hide();
         calibration().load(path);
         EXPECT_TRUE(me->wait([&] { return !calibration().busy(); }));

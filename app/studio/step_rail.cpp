@@ -8,7 +8,7 @@
 namespace seamwright {
 namespace {
 
-constexpr int kWide_px = 208, kNarrow_px = 72;
+constexpr int kWide_px = 164, kNarrow_px = 72;
 constexpr double kSmall = 0.8;  // of the narrow rail's words
 
 }  // namespace

@@ -44,7 +44,7 @@
     </message>
     <message>
         <source>Regions</source>
-        <translation>Korrekturbereiche</translation>
+        <translation>Bereiche</translation>
     </message>
     <message>
         <source>Prove</source>
@@ -5705,7 +5705,7 @@ ausgelassen</translation>
     </message>
     <message>
         <source>Region</source>
-        <translation>Korrekturbereich</translation>
+        <translation>Bereich</translation>
     </message>
     <message>
         <source>Verdict</source>
@@ -5901,7 +5901,7 @@ ausgelassen</translation>
     </message>
     <message>
         <source>Region, verdict</source>
-        <translation>Korrekturbereich, Urteil</translation>
+        <translation>Bereich, Urteil</translation>
     </message>
     <message>
         <source>Part %1 is measured and waits for your answer below.</source>
@@ -6192,7 +6192,7 @@ ausgelassen</translation>
     </message>
     <message>
         <source>Next: regions</source>
-        <translation>Weiter: Korrekturbereiche</translation>
+        <translation>Weiter: Bereiche</translation>
     </message>
     <message>
         <source>Confirm</source>

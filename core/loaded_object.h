@@ -1,6 +1,6 @@
 #pragma once
 // Shared objects of the house that stand beside the program, each read from disk with the first call that needs it. As libraries
-// of the program, what they pull along (OpenCASCADE, VTK's readers, PCL's features, OpenCV's codecs) is four fifths of its start.
+// of the program, what they pull along (OpenCASCADE, VTK's readers, PCL's features, OpenCV's codecs) is most of its start.
 
 #include "core/error.h"
 

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/system_text.h"
 #include "devices/abb/egm.h"
 #include "devices/abb/program.h"
 #include "devices/abb/rapid.h"
@@ -207,7 +208,8 @@ Expected<std::vector<std::filesystem::path>> write_program_files(const std::file
                                                                  const std::vector<ProgramFile>& files) {
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);
-    if (failed) return file_error(Text("the folder cannot be made: {}", failed.message()), folder.string());
+    if (failed)
+        return file_error(Text("the folder cannot be made: {}", system_text(failed)), folder.string());
     // A controller with one file of the old program and one of the new does neither: all stand written before the first
     // takes its name.
     std::vector<std::filesystem::path> written, beside;
@@ -223,7 +225,8 @@ Expected<std::vector<std::filesystem::path>> write_program_files(const std::file
     }
     for (std::size_t i = 0; done && i < written.size(); ++i) {
         std::filesystem::rename(beside[i], behind_links(written[i]), failed);
-        if (failed) done = file_error(Text("cannot be written ({})", failed.message()), written[i].string());
+        if (failed)
+            done = file_error(Text("cannot be written ({})", system_text(failed)), written[i].string());
     }
     if (done) return written;
     for (const auto& path : beside) std::filesystem::remove(path, failed);

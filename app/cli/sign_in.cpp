@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "core/system_text.h"
+
 namespace seamwright::cli {
 namespace {
 
@@ -57,7 +59,7 @@ Expected<std::string> from_file(const std::string& path) {
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     struct stat info {};
     if (file.get() < 0 || ::fstat(file.get(), &info) != 0)
-        return file_error(Text("the password's file cannot be read ({})", std::strerror(errno)), path);
+        return file_error(Text("the password's file cannot be read ({})", system_text(errno)), path);
     if (S_ISREG(info.st_mode) && (info.st_mode & (S_IRWXG | S_IRWXO)) != 0)
         return input_error("others may read the password's file", path, Text("chmod 600 {}", path));
     std::string line = read_line(file.get());

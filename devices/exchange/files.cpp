@@ -10,6 +10,8 @@
 #include <cstring>
 #include <optional>
 
+#include "core/system_text.h"
+
 namespace seamwright {
 namespace {
 
@@ -19,10 +21,6 @@ struct Descriptor {
         if (fd >= 0) ::close(fd);
     }
 };
-
-std::string system_message() {
-    return std::strerror(errno);
-}
 
 // errno says why not.
 bool write_all(int fd, std::string_view text) {
@@ -59,10 +57,10 @@ std::optional<int> own_descriptor(const std::filesystem::path& path) {
 
 Expected<std::string> read_text_file(const std::filesystem::path& path, std::size_t limit_bytes) {
     Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
-    if (file.fd < 0) return file_error(Text("cannot be opened ({})", system_message()), path.string());
+    if (file.fd < 0) return file_error(Text("cannot be opened ({})", system_text(errno)), path.string());
     struct stat info {};
     if (::fstat(file.fd, &info) != 0)
-        return file_error(Text("cannot be read ({})", system_message()), path.string());
+        return file_error(Text("cannot be read ({})", system_text(errno)), path.string());
     if (S_ISDIR(info.st_mode)) return file_error("is a folder, not a file", path.string());
     const auto too_long = [&] {
         return file_error(Text("is longer than {} MiB", limit_bytes >> 20), path.string());
@@ -75,7 +73,7 @@ Expected<std::string> read_text_file(const std::filesystem::path& path, std::siz
         if (used == text.size()) text.resize(text.size() * 2);
         const ssize_t got = ::read(file.fd, text.data() + used, text.size() - used);
         if (got < 0 && errno == EINTR) continue;
-        if (got < 0) return file_error(Text("cannot be read ({})", system_message()), path.string());
+        if (got < 0) return file_error(Text("cannot be read ({})", system_text(errno)), path.string());
         if (got == 0) break;
         used += static_cast<std::size_t>(got);
         if (used > limit_bytes) return too_long();
@@ -118,16 +116,16 @@ Expected<void> write_text_file(const std::filesystem::path& path, std::string_vi
     };
     struct stat old {};
     const bool exists = ::stat(path.c_str(), &old) == 0;
-    if (!exists && errno == ELOOP) return failed(system_message());
+    if (!exists && errno == ELOOP) return failed(system_text(errno));
     if (exists && S_ISDIR(old.st_mode)) return file_error("is a folder, not a file", path.string());
     if (const auto own = own_descriptor(path)) {
         // Not opened anew: that would write at the start of a file that the shell has written to.
-        if (!write_all(*own, text)) return failed(system_message());
+        if (!write_all(*own, text)) return failed(system_text(errno));
         return {};
     }
     if (exists && !S_ISREG(old.st_mode)) {
         Descriptor through{::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY)};
-        if (through.fd < 0 || !write_all(through.fd, text)) return failed(system_message());
+        if (through.fd < 0 || !write_all(through.fd, text)) return failed(system_text(errno));
         return {};
     }
     SEAM_OK(check_replaceable(path));
@@ -135,11 +133,11 @@ Expected<void> write_text_file(const std::filesystem::path& path, std::string_vi
     std::string temporary = target.string() + ".XXXXXX";
     Descriptor file{::mkostemp(temporary.data(), O_CLOEXEC)};
     if (file.fd < 0) {
-        return file_error(Text("cannot be written ({})", system_message()), path.string(),
+        return file_error(Text("cannot be written ({})", system_text(errno)), path.string(),
                           "check that the folder exists and is writable");
     }
     const auto fail = [&] {
-        const std::string message = system_message();
+        const Text message = system_text(errno);
         ::unlink(temporary.c_str());
         return failed(message);
     };

@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <thread>
 
+#include "core/system_text.h"
 #include "devices/backoff.h"
 #include "devices/line/modbus_station.h"
 
@@ -110,13 +111,15 @@ class ModbusClient : public ModbusLink {
     static bool is_exception(int error) { return error >= EMBXILFUN && error <= EMBXGTAR; }
 
     void drop(int error) {
+        const Text why =
+            error < MODBUS_ENOBASE ? system_text(error) : Text(std::string(modbus_strerror(error)));
         // Told once an outage.
         if (!told_away_)
-            notices_.add(is_exception(error)
-                             ? Text("the PLC at {}:{} refuses the words at read_address or write_address: {}",
-                                    settings_.address, settings_.port, std::string(modbus_strerror(error)))
-                             : Text("the PLC at {}:{} does not answer: {}", settings_.address, settings_.port,
-                                    std::string(modbus_strerror(error))));
+            notices_.add(
+                is_exception(error)
+                    ? Text("the PLC at {}:{} refuses the words at read_address or write_address: {}",
+                           settings_.address, settings_.port, why)
+                    : Text("the PLC at {}:{} does not answer: {}", settings_.address, settings_.port, why));
         told_away_ = true;
         connected_ = false;
         station_.lost();

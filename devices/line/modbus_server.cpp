@@ -14,6 +14,8 @@
 
 #include "devices/line/modbus_station.h"
 
+#include "core/system_text.h"
+
 namespace seamwright {
 namespace {
 
@@ -115,7 +117,7 @@ class ModbusServer : public ModbusLink {
         if (!error) acceptor_.bind(endpoint, error);
         if (!error) acceptor_.listen(settings_.connections, error);
         if (error || !modbus_)
-            return device_error(Text("the Modbus server cannot begin: {}", error.message()),
+            return device_error(Text("the Modbus server cannot begin: {}", system_text(error)),
                                 Text("{}:{}", settings_.listen, settings_.port), "choose another port");
         port_ = acceptor_.local_endpoint().port();
         accept();

@@ -9,6 +9,7 @@
 #include <set>
 #include <thread>
 
+#include "core/system_text.h"
 #include "devices/backoff.h"
 #include "devices/exchange/files.h"
 #include "devices/host_time.h"
@@ -182,9 +183,10 @@ class Mqtt : public LineLink {
             }
             const int code = mosquitto_loop(client_, 20, 1);
             if (refused_ != 0) {
-                drop(mosquitto_connack_string(refused_));
+                drop(std::string(mosquitto_connack_string(refused_)));
             } else if (code != MOSQ_ERR_SUCCESS) {
-                drop(code == MOSQ_ERR_ERRNO ? std::strerror(errno) : mosquitto_strerror(code));
+                drop(code == MOSQ_ERR_ERRNO ? system_text(errno)
+                                            : Text(std::string(mosquitto_strerror(code))));
             } else if (!connected_ && Clock::now() > give_up_) {
                 drop("no answer in time");
             } else if (connected_) {
@@ -208,7 +210,7 @@ class Mqtt : public LineLink {
         refused_ = 0;
         client_ = mosquitto_new(settings_.client_id.c_str(), true, this);
         if (!client_) {
-            drop(std::strerror(errno));
+            drop(system_text(errno));
             return false;
         }
         mosquitto_connect_callback_set(
@@ -234,7 +236,7 @@ class Mqtt : public LineLink {
             code = mosquitto_connect_async(client_, settings_.address.c_str(), settings_.port,
                                            settings_.keepalive_s);
         if (code != MOSQ_ERR_SUCCESS) {
-            drop(code == MOSQ_ERR_ERRNO ? std::strerror(errno) : mosquitto_strerror(code));
+            drop(code == MOSQ_ERR_ERRNO ? system_text(errno) : Text(std::string(mosquitto_strerror(code))));
             return false;
         }
         give_up_ = Clock::now() + settings_.timeout;
@@ -247,7 +249,7 @@ class Mqtt : public LineLink {
         connected_ = false;
     }
 
-    void drop(const std::string& why) {
+    void drop(const Text& why) {
         if (!told_away_)
             notices_.add(
                 Text("the broker at {}:{} does not answer: {}", settings_.address, settings_.port, why));

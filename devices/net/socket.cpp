@@ -12,6 +12,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/system_text.h"
+
 namespace seamwright {
 namespace {
 
@@ -57,7 +59,7 @@ tl::unexpected<Error> failure(const error_code& e, const std::string& where) {
     if (ended_by_peer(e))
         return device_error(ErrorCode::disconnected, kDisconnected, where,
                             "check the cable and the controller");
-    return device_error(e.message(), where);
+    return device_error(system_text(e), where);
 }
 
 // Letters, digits, '-' and '_' between dots. What ends in a number is none: the system's lookup would take "192.168.1" and
@@ -255,7 +257,7 @@ Expected<TcpListener> TcpListener::listen(const std::string& address, std::uint1
     if (!e) impl->acceptor.bind(endpoint, e);
     if (!e) impl->acceptor.listen(4, e);
     if (e)
-        return device_error(Text("cannot listen: {}", e.message()), impl->where,
+        return device_error(Text("cannot listen: {}", system_text(e)), impl->where,
                             "another program may use this port");
     impl->where = text(impl->acceptor.local_endpoint());
     return TcpListener(std::move(impl));
@@ -319,7 +321,7 @@ Expected<UdpSocket> UdpSocket::bind(const std::string& address, std::uint16_t po
     if (!e && shared == Shared::yes) impl->socket.set_option(udp::socket::reuse_address(true), e);
     if (!e) impl->socket.bind(endpoint, e);
     if (e)
-        return device_error(Text("cannot bind: {}", e.message()), impl->where,
+        return device_error(Text("cannot bind: {}", system_text(e)), impl->where,
                             "another program may use this port");
     impl->where = text(impl->socket.local_endpoint());
     return UdpSocket(std::move(impl));

@@ -12,6 +12,7 @@
 #include <set>
 #include <utility>
 
+#include "core/system_text.h"
 #include "devices/exchange/files.h"
 
 namespace seamwright {
@@ -96,14 +97,14 @@ Expected<void> write_workbook(const Workbook& workbook, const std::filesystem::p
                                path.string(), "choose a shorter time");
     }
     SEAM_OK(check_replaceable(path));
-    const auto failed = [&](const std::string& why) {
+    const auto failed = [&](const Text& why) {
         return file_error(Text("the workbook cannot be written: {}", why), path.string(),
                           "choose a folder that can be written to");
     };
     // Beside it first: what is half written never has its name.
     const std::string beside = fmt::format("{}.{}.part", path.string(), getpid());
     // The library says on stderr what it cannot open.
-    if (!std::ofstream(beside)) return failed(std::strerror(errno));
+    if (!std::ofstream(beside)) return failed(system_text(errno));
     Closing book(workbook_new(beside.c_str()));
     if (!book.get()) return failed("no memory");
     lxw_format* bold = workbook_add_format(book.get());
@@ -118,11 +119,11 @@ Expected<void> write_workbook(const Workbook& workbook, const std::filesystem::p
     std::error_code error;
     if (const lxw_error status = book.close(); status != LXW_NO_ERROR) {
         std::filesystem::remove(beside, error);
-        return failed(lxw_strerror(status));
+        return failed(std::string(lxw_strerror(status)));
     }
     std::filesystem::rename(beside, path, error);
     if (error) {
-        const std::string why = error.message();
+        const Text why = system_text(error);
         std::filesystem::remove(beside, error);
         return failed(why);
     }

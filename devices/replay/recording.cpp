@@ -6,6 +6,7 @@
 #include <cctype>
 #include <set>
 
+#include "core/system_text.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/exchange/tables/pose_names.h"
@@ -180,7 +181,7 @@ Expected<std::vector<RecordedFrame>> frames_of_folder(const fs::path& folder, co
             return input_error(Text("holds more than {} frames", kFrameLimit), folder.string());
         }
     }
-    if (problem) return file_error(Text("cannot be listed ({})", problem.message()), folder.string());
+    if (problem) return file_error(Text("cannot be listed ({})", system_text(problem)), folder.string());
     // Of several kinds the first counts; text beside images is their poses.
     for (const std::string_view extension : kProfileExtensions) {
         const auto is = [&](const RecordedFrame& f) {

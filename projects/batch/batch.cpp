@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "core/system_text.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "projects/batch/slurm.h"
@@ -246,7 +247,7 @@ Expected<BatchOutcome> run_batch(const BatchJob& job, const BatchOptions& given)
     std::error_code error;
     if (options.program.empty()) options.program = fs::read_symlink("/proc/self/exe", error);
     if (error)
-        return file_error(Text("where this program lies is not known: {}", error.message()),
+        return file_error(Text("where this program lies is not known: {}", system_text(error)),
                           "/proc/self/exe");
     options.folder = fs::absolute(options.folder, error).lexically_normal();
     for (const char c : options.folder.string())
@@ -255,7 +256,7 @@ Expected<BatchOutcome> run_batch(const BatchJob& job, const BatchOptions& given)
                                "name one without quotes, backslashes and control characters");
     fs::create_directories(options.folder, error);
     if (error)
-        return file_error(Text("the folder cannot be made: {}", error.message()), options.folder.string());
+        return file_error(Text("the folder cannot be made: {}", system_text(error)), options.folder.string());
     const Lock lock(options.folder / "lock");
     if (!lock.taken())
         return usage_error("somebody else collects this job at the moment", options.folder.string());

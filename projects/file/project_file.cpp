@@ -14,6 +14,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "core/system_text.h"
 #include "devices/exchange/files.h"
 #include "projects/file/project_file_detail.h"
 #include "projects/file/schema.h"
@@ -47,7 +48,7 @@ Expected<void> put_in_place(const fs::path& made, const fs::path& path, bool rep
         fs::remove(made, ignored);
         if (code == EEXIST)
             return file_error("the file exists already", path.string(), "choose another name");
-        return file_error(Text("the file cannot be made ({})", std::strerror(code)), path.string());
+        return file_error(Text("the file cannot be made ({})", system_text(code)), path.string());
     }
     sync_folder(path);
     return {};

@@ -7,6 +7,7 @@
 #include <ctime>
 #include <mutex>
 
+#include "core/system_text.h"
 #include "devices/exchange/files.h"
 #include "projects/statistics/statistics_page.h"
 
@@ -48,7 +49,7 @@ Expected<std::filesystem::path> write_shift_report(const Shift& shift, const Shi
     std::error_code error;
     std::filesystem::create_directories(options.folder, error);
     if (error)
-        return file_error(Text("the folder cannot be made: {}", error.message()), options.folder.string(),
+        return file_error(Text("the folder cannot be made: {}", system_text(error)), options.folder.string(),
                           "choose a folder that can be written to");
     const auto path = shift_report_path(shift, options);
     auto json_path = path;

@@ -10,6 +10,8 @@
 #include <optional>
 #include <thread>
 
+#include "core/system_text.h"
+
 namespace seamwright {
 namespace {
 
@@ -262,7 +264,7 @@ Expected<StatusServer> StatusServer::start(StatusPages pages, const StatusServer
     if (!error) impl->acceptor.bind(endpoint, error);
     if (!error) impl->acceptor.listen(kMostConnections, error);
     if (error)
-        return device_error(Text("the status page cannot be served: {}", error.message()), options.address,
+        return device_error(Text("the status page cannot be served: {}", system_text(error)), options.address,
                             "choose another port");
     impl->accept();
     impl->thread = std::thread([context = &impl->context] { context->run(); });

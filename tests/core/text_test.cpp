@@ -2,10 +2,13 @@
 
 #include <gmock/gmock.h>
 
+#include <cerrno>
 #include <cmath>
+#include <future>
 #include <limits>
 
 #include "core/error.h"
+#include "core/system_text.h"
 
 namespace seamwright {
 namespace {
@@ -79,6 +82,22 @@ TEST(Text, StoredPatternsAreChecked) {
     EXPECT_FALSE(from("{:{}}", {1.0, std::int64_t{2'000'000'000}}));
     EXPECT_FALSE(from(std::string(100'000, 'x'), {1.0}));
     EXPECT_FALSE(from("{}", std::vector<Text::Argument>(100'000, 1.0)));
+}
+
+// In English the system's own word, so that scripts find it; in German what an engineer meets at files and at connections.
+TEST(SystemText, IsTheSystemsWordOfEveryNumber) {
+    for (int number = 1; number < 140; ++number) {
+        EXPECT_EQ(system_text(number), std::generic_category().message(number)) << number;
+        EXPECT_EQ(system_text(std::error_code(number, std::system_category())), system_text(number))
+            << number;
+    }
+    for (const int number : {ENOENT, EACCES, ENOSPC, EROFS, EISDIR, EEXIST, ECONNREFUSED, EHOSTUNREACH,
+                             ENETUNREACH, ETIMEDOUT, EADDRINUSE, EADDRNOTAVAIL, ECONNRESET, EPIPE, EMFILE})
+        EXPECT_NE(system_text(number).in(Language::german), system_text(number).english()) << number;
+    const Text refused = device_error(system_text(ECONNREFUSED), "10.0.0.5:502").value().text();
+    EXPECT_EQ(refused.in(Language::german), "10.0.0.5:502: Verbindung abgelehnt");
+    const std::error_code other = std::make_error_code(std::future_errc::no_state);
+    EXPECT_EQ(system_text(other), other.message()) << "another category's number is not the system's";
 }
 
 }  // namespace

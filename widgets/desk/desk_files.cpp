@@ -1,5 +1,6 @@
 // The desk's document and the disk: made, opened, saved, kept against crashes.
 
+#include "core/system_text.h"
 #include "devices/exchange/files.h"
 #include "projects/calibrate/session/session.h"
 #include "widgets/desk/desk.h"
@@ -158,7 +159,8 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
     }
     discard_recovery(path);  // of a file that is replaced; must not meet the one that takes its name
     std::filesystem::rename(part, target, failed);
-    if (failed) return file_error(Text("the file cannot be replaced: {}", failed.message()), path.string());
+    if (failed)
+        return file_error(Text("the file cannot be replaced: {}", system_text(failed)), path.string());
     drop_kept();
     recovery_writer_.flush();
     if (auto copied = CalibrationSession::copy_all(file_->path(), path); !copied)

@@ -4,6 +4,7 @@
 
 #include <QCoreApplication>
 
+#include "core/system_text.h"
 #include "projects/file/project_json.h"
 #include "widgets/desk/commands.h"
 #include "widgets/shown_text.h"
@@ -85,7 +86,7 @@ Expected<std::filesystem::path> set_aside_recovery(const std::filesystem::path& 
         aside = fmt::format("{}-{}", name, n);
     std::filesystem::rename(path, aside, failed);
     if (failed)
-        return file_error(Text("the file cannot be renamed: {}", failed.message()), path.string(),
+        return file_error(Text("the file cannot be renamed: {}", system_text(failed)), path.string(),
                           "move it away");
     std::error_code none;  // a journal belongs to its file
     std::filesystem::rename(path.string() + "-journal", aside.string() + "-journal", none);

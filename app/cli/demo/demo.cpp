@@ -8,6 +8,7 @@
 
 #include "app/cli/demo/demo_detail.h"
 #include "core/profile/taught_profile.h"
+#include "core/system_text.h"
 #include "devices/cell_server.h"
 #include "devices/drawing/door_step.h"
 #include "devices/exchange/files.h"
@@ -312,7 +313,8 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     std::error_code failed;
     std::filesystem::create_directories(options.folder, failed);
     if (failed)
-        return file_error(Text("the folder cannot be made: {}", failed.message()), options.folder.string());
+        return file_error(Text("the folder cannot be made: {}", system_text(failed)),
+                          options.folder.string());
 
     DemoOutcome outcome;
     outcome.project_file = options.folder / "demo.seam";

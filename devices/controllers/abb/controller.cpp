@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "abb_application.h"
+#include "core/system_text.h"
 #include "devices/abb/program.h"
 #include "devices/controllers/abb/rapid/rapid_system.h"
 #include "devices/exchange/files.h"
@@ -90,7 +91,7 @@ Expected<std::vector<ProgramFile>> files_of_folder(const std::string& folder) {
         SEAM_TRY(auto text, read_text_file(entry.path()));
         files.push_back({entry.path().filename().string(), std::move(text)});
     }
-    if (failed) return file_error(Text("the folder cannot be read: {}", failed.message()), folder);
+    if (failed) return file_error(Text("the folder cannot be read: {}", system_text(failed)), folder);
     std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
     return files;
 }

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/number_text.h"
+#include "core/system_text.h"
 
 namespace seamwright {
 
@@ -63,7 +64,7 @@ Expected<std::vector<fs::path>> plate_images(const fs::path& folder,
                                "keep one of them");
         images.push_back(it->path());
     }
-    if (code) return file_error(Text("the folder cannot be read: {}", code.message()), folder.string());
+    if (code) return file_error(Text("the folder cannot be read: {}", system_text(code)), folder.string());
     if (images.empty())
         return input_error("there is no image in the folder", folder.string(),
                            "give a folder of PNG, TIFF, PGM, BMP or JPEG images");

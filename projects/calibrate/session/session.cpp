@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/system_text.h"
 #include "devices/capture/capture.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
@@ -72,7 +73,7 @@ int number_of(const std::string& id) {
 Expected<void> make_folder(const fs::path& folder) {
     std::error_code code;
     fs::create_directories(folder, code);
-    if (code) return file_error(Text("the folder cannot be made: {}", code.message()), folder.string());
+    if (code) return file_error(Text("the folder cannot be made: {}", system_text(code)), folder.string());
     return {};
 }
 
@@ -102,7 +103,8 @@ Expected<void> CalibrationSession::copy_all(const fs::path& from_project, const 
     if (!fs::exists(from, code)) return {};
     fs::copy(from, to, fs::copy_options::recursive, code);
     if (code)
-        return file_error(Text("the calibration sessions cannot be copied: {}", code.message()), to.string());
+        return file_error(Text("the calibration sessions cannot be copied: {}", system_text(code)),
+                          to.string());
     return {};
 }
 

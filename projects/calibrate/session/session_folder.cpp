@@ -6,6 +6,7 @@
 #include <cctype>
 #include <string_view>
 
+#include "core/system_text.h"
 #include "devices/capture/capture.h"
 #include "devices/exchange/json_fields.h"
 #include "projects/calibrate/session/session.h"
@@ -92,7 +93,7 @@ bool is_session_of(const json& list, const std::string& sensor,
 Expected<void> move_folder(const fs::path& from, const fs::path& to) {
     std::error_code code;
     fs::rename(from, to, code);
-    if (code) return file_error(Text("the folder cannot be moved: {}", code.message()), from.string());
+    if (code) return file_error(Text("the folder cannot be moved: {}", system_text(code)), from.string());
     return {};
 }
 

@@ -12,6 +12,7 @@
 #include "app/cli/command.h"
 #include "core/profile/filter.h"
 #include "core/profile/stripe/peaks.h"
+#include "core/system_text.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/image_file.h"
 #include "devices/exchange/tables/candidates_table.h"
@@ -135,7 +136,7 @@ Expected<void> write(const TrackArguments& a, const std::string& file, const Pro
     if (a.files.size() == 1) return write_profile_csv(a.out, profile);
     std::error_code failed;
     fs::create_directories(a.out, failed);
-    if (failed) return file_error(Text("the folder cannot be made ({})", failed.message()), a.out);
+    if (failed) return file_error(Text("the folder cannot be made ({})", system_text(failed)), a.out);
     return write_profile_csv(fs::path(a.out) / (fs::path(file).stem().string() + ".csv"), profile);
 }
 

@@ -4,6 +4,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/commands/production/fleet.h"
+#include "core/system_text.h"
 #include "devices/exchange/files.h"
 #include "projects/file/project_file.h"
 #include "projects/fleet/target.h"
@@ -113,7 +114,7 @@ Expected<Answer> service_command(const ServiceArguments& a) {
     std::error_code error;
     const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
     if (error)
-        return file_error(Text("where this program lies is not known: {}", error.message()),
+        return file_error(Text("where this program lies is not known: {}", system_text(error)),
                           "/proc/self/exe");
     SEAM_TRY(auto text, unit_text(a, program));
     Answer answer;

@@ -9,6 +9,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/sign_in.h"
+#include "core/system_text.h"
 #include "devices/exchange/files.h"
 #include "projects/file/chain/audit.h"
 #include "projects/file/project_file.h"
@@ -32,7 +33,7 @@ Expected<std::string> made_password(const std::string& path) {
     const int code = errno;
     if (fd >= 0) written = ::close(fd) == 0 && written;
     if (!written)
-        return file_error(Text("the password's file cannot be made ({})", std::strerror(code)), path,
+        return file_error(Text("the password's file cannot be made ({})", system_text(code)), path,
                           "name a file that is not there yet");
     return password;
 }

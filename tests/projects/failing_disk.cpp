@@ -14,15 +14,15 @@ struct State {
     std::atomic<std::int64_t> at = 0, counted = 0;
     std::atomic<bool> once = true, syncs = true, armed = false, failed = false;
 };
-State state;
+State disk;
 sqlite3_vfs* real = nullptr;
 
 // True when this operation is to fail.
 bool fails(bool sync) {
-    if (!state.armed || (state.syncs && !sync)) return false;
-    const std::int64_t number = ++state.counted;
-    const bool now = state.at > 0 && (state.once ? number == state.at : number >= state.at);
-    if (now) state.failed = true;
+    if (!disk.armed || (disk.syncs && !sync)) return false;
+    const std::int64_t number = ++disk.counted;
+    const bool now = disk.at > 0 && (disk.once ? number == disk.at : number >= disk.at);
+    if (now) disk.failed = true;
     return now;
 }
 
@@ -106,22 +106,22 @@ FailingDisk::~FailingDisk() {
     sqlite3_vfs_register(real, 1);
 }
 void FailingDisk::fail_at(std::int64_t number, Fails fails, Counts counts) {
-    state.armed = false;
-    state.at = number;
-    state.counted = 0;
-    state.failed = false;
-    state.once = fails == Fails::once;
-    state.syncs = counts == Counts::syncs;
-    state.armed = true;
+    disk.armed = false;
+    disk.at = number;
+    disk.counted = 0;
+    disk.failed = false;
+    disk.once = fails == Fails::once;
+    disk.syncs = counts == Counts::syncs;
+    disk.armed = true;
 }
 void FailingDisk::heal() {
-    state.armed = false;
+    disk.armed = false;
 }
 std::int64_t FailingDisk::counted() const {
-    return state.counted;
+    return disk.counted;
 }
 bool FailingDisk::failed() const {
-    return state.failed;
+    return disk.failed;
 }
 
 }  // namespace seamwright

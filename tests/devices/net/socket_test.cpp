@@ -88,6 +88,8 @@ TEST(Tcp, RefusedPortAndBadAddressAreClearErrors) {
     auto refused = TcpConnection::connect("127.0.0.1", free_port, milliseconds(500));
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().kind, ErrorKind::device);
+    EXPECT_EQ(refused.error().what, "Connection refused");
+    EXPECT_EQ(refused.error().what.in(Language::german), "Verbindung abgelehnt");
     auto bad = TcpConnection::connect("192.168.1", 7000, milliseconds(500));
     ASSERT_FALSE(bad);
     EXPECT_EQ(bad.error().kind, ErrorKind::input);

@@ -14,7 +14,7 @@ namespace {
 using test::BoardScene;
 using Draw = std::function<double()>;
 
-struct Tally {
+struct BoardTally {
     int boards = 0, found = 0, wrong = 0, undecided = 0, asked = 0, misread = 0;
     double squares = 0, worst = 0;
     std::size_t corners = 0;
@@ -55,10 +55,10 @@ void add_stripe(BoardScene& s, bool along_a_row, const Draw& u) {
     s.stripe_deg = std::atan2(b.y() - a.y(), b.x() - a.x()) * 180 / M_PI;
 }
 
-Tally run(const std::string& kind, int count) {
+BoardTally run(const std::string& kind, int count) {
     static constexpr std::array<std::pair<int, int>, 8> sizes{
         {{7, 6}, {9, 6}, {11, 8}, {8, 6}, {6, 5}, {6, 6}, {7, 7}, {5, 4}}};
-    Tally tally;
+    BoardTally tally;
     for (int n = 0; n < count; ++n) {
         std::mt19937 random(static_cast<unsigned>(7919 * n + 31 * static_cast<int>(kind.size()) + kind[0]));
         std::uniform_real_distribution<double> uniform(0, 1);
@@ -131,7 +131,7 @@ TEST(CheckerboardTrials, FoundAndNeverWrong) {
     int boards = 0, found = 0, undecided = 0, asked = 0, misread = 0;
     for (const char* kind : {"plain", "tilted", "blurred", "dim", "noisy", "stripe", "stripe on a row",
                              "hidden", "hidden side", "wide lens", "reflections"}) {
-        const Tally t = run(kind, 20);
+        const BoardTally t = run(kind, 20);
         boards += t.boards, found += t.found, undecided += t.undecided, asked += t.asked,
             misread += t.misread;
         EXPECT_EQ(t.wrong, 0) << kind;

@@ -12,7 +12,7 @@ namespace {
 
 using touches::Cell;
 
-struct Case {
+struct NozzleCase {
     const char* name;
     bool sphere;
     int touches;
@@ -20,10 +20,10 @@ struct Case {
     bool stated;
 };
 
-class NozzleCoverage : public testing::TestWithParam<Case> {};
+class NozzleCoverage : public testing::TestWithParam<NozzleCase> {};
 
 TEST_P(NozzleCoverage, NinetyFivePercentHoldTheTip) {
-    const Case& c = GetParam();
+    const NozzleCase& c = GetParam();
     constexpr int kTrials = 1000;
     Cell cell;
     cell.hand = 0.1;
@@ -71,12 +71,12 @@ TEST_P(NozzleCoverage, NinetyFivePercentHoldTheTip) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cells, NozzleCoverage,
-                         testing::Values(Case{"sphere_turned_stated", true, 10, 25, true},
-                                         Case{"sphere_turned_estimated", true, 12, 25, false},
-                                         Case{"sphere_one_attitude_stated", true, 8, 0, true},
-                                         Case{"sphere_one_attitude_estimated", true, 12, 0, false},
-                                         Case{"point_turned_stated", false, 4, 25, true},
-                                         Case{"point_turned_estimated", false, 6, 25, false}),
+                         testing::Values(NozzleCase{"sphere_turned_stated", true, 10, 25, true},
+                                         NozzleCase{"sphere_turned_estimated", true, 12, 25, false},
+                                         NozzleCase{"sphere_one_attitude_stated", true, 8, 0, true},
+                                         NozzleCase{"sphere_one_attitude_estimated", true, 12, 0, false},
+                                         NozzleCase{"point_turned_stated", false, 4, 25, true},
+                                         NozzleCase{"point_turned_estimated", false, 6, 25, false}),
                          [](const auto& one) { return std::string(one.param.name); });
 
 }  // namespace

@@ -18,7 +18,7 @@ using part_cell::Curve;
 using part_cell::Motion;
 using part_cell::Noise;
 
-struct Tally {
+struct PartTally {
     int trials = 0, answered = 0, wrong = 0;
     int inside = 0;             // of the joint region of the mounting
     std::array<int, 7> each{};  // of each parameter's interval
@@ -44,7 +44,7 @@ struct Tally {
         stated2 += r.working_sigma_mm * r.working_sigma_mm;
         wrong += serves(r.report.judgement.verdict) && error > 5 * r.working_sigma_mm;
     }
-    void add(const Tally& t) {
+    void add(const PartTally& t) {
         trials += t.trials, answered += t.answered, wrong += t.wrong, inside += t.inside, chi += t.chi;
         for (std::size_t i = 0; i < 7; ++i) each.at(i) += t.each.at(i);
     }
@@ -65,7 +65,7 @@ struct Tally {
 
 class Sum : public testing::Environment {
   public:
-    Tally tally;
+    PartTally tally;
     void TearDown() override {
         if (tally.trials < 500) return;  // run in one process: every cell
         tally.print("all");
@@ -89,7 +89,7 @@ class OnPartTrials : public testing::TestWithParam<int> {};
 TEST_P(OnPartTrials, StatedIntervalsHoldTheTruth) {
     const int kind = GetParam() / 2;
     const bool of_pass = GetParam() % 2 == 0;
-    Tally tally;
+    PartTally tally;
     for (int trial = 0; trial < kTrials; ++trial) {
         Cell cell(static_cast<unsigned>(10000 * (GetParam() + 1) + trial));
         std::vector<Curve> curves;
@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(Cells, OnPartTrials, testing::Range(0, 12));
 // 20 mm along the edge and 5 degrees: lean and turn within each pass together stay in +-2.5 degrees.
 TEST(OnPartAccuracy, AtTwentyMillimetresAndFiveDegrees) {
     for (const bool of_pass : {true, false}) {
-        Tally tally;
+        PartTally tally;
         for (int trial = 0; trial < 12; ++trial) {
             Cell cell(static_cast<unsigned>(510000 + trial));
             Noise noise{0.03, 0, 0, 0, 0};
@@ -146,7 +146,7 @@ TEST(OnPartAccuracy, AtTwentyMillimetresAndFiveDegrees) {
 
 // Few attitudes, short passes, one edge: an answer only where it holds.
 TEST(OnPartRefusals, NeverServesAtAWrongPlace) {
-    Tally tally;
+    PartTally tally;
     int refused = 0;
     for (int trial = 0; trial < 90; ++trial) {
         Cell cell(static_cast<unsigned>(700000 + trial));

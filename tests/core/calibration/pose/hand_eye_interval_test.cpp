@@ -12,10 +12,10 @@
 namespace seamwright {
 namespace {
 
-using Motion = Eigen::Isometry3d;
+using Isometry = Eigen::Isometry3d;
 
-Motion screw(const Eigen::Vector3d& turn, const Eigen::Vector3d& shift) {
-    Motion m = Motion::Identity();
+Isometry screw(const Eigen::Vector3d& turn, const Eigen::Vector3d& shift) {
+    Isometry m = Isometry::Identity();
     if (turn.norm() > 0) m.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).matrix();
     m.translation() = shift;
     return m;
@@ -35,19 +35,19 @@ double coverage(Mount mount, int pairs, double tilt_rad, double depth_mm, unsign
     int inside = 0, asked = 0;
     const bool fixed = mount == Mount::eye_to_hand;
     for (int trial = 0; trial < trials; ++trial) {
-        const Motion camera = screw(box(0.8, 0.8, 0.8),
-                                    fixed ? Eigen::Vector3d(1500, 200, 900) : Eigen::Vector3d(80, -30, 150));
-        const Motion target =
+        const Isometry camera = screw(
+            box(0.8, 0.8, 0.8), fixed ? Eigen::Vector3d(1500, 200, 900) : Eigen::Vector3d(80, -30, 150));
+        const Isometry target =
             screw(box(0.8, 0.8, 0.8), fixed ? Eigen::Vector3d(20, 40, 110) : Eigen::Vector3d(1200, 100, 300));
         std::vector<HandEyePair> list;
         for (int i = 0; i < pairs; ++i) {
-            const Motion seen =
+            const Isometry seen =
                 screw(box(0.6, 0.6, 0.6), fixed ? Eigen::Vector3d(0, 0, 1100) + box(250, 200, 150)
                                                 : Eigen::Vector3d(0, 0, 500) + box(60, 60, 60));
-            const Motion a = target * (camera * seen).inverse();
-            const Motion robot =
+            const Isometry a = target * (camera * seen).inverse();
+            const Isometry robot =
                 (fixed ? a.inverse() : a) * screw(noise(2e-4, 2e-4, 2e-4), noise(0.06, 0.06, 0.06));
-            Motion found = screw(noise(tilt_rad, tilt_rad, 2e-4), Eigen::Vector3d::Zero());
+            Isometry found = screw(noise(tilt_rad, tilt_rad, 2e-4), Eigen::Vector3d::Zero());
             found.linear() = (found.linear() * seen.linear()).eval();
             found.translation() = seen.translation() + noise(0.04, 0.04, depth_mm);
             list.push_back({"p" + std::to_string(i), Pose(robot.matrix()), Pose(found.matrix())});

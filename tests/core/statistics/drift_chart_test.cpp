@@ -185,17 +185,17 @@ TEST(DriftChart, HostileInputIsRefused) {
     const std::vector<DriftChannel> channels(1, {kSigma, kSigma});
     const auto refused = [&](std::vector<std::vector<double>> rows, std::vector<DriftChannel> c,
                              DriftChartOptions o = {}) { return !judge_drift(rows, c, o).has_value(); };
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN(),
-                     kInf = std::numeric_limits<double>::infinity();
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
+                     inf = std::numeric_limits<double>::infinity();
     EXPECT_TRUE(refused({}, channels));
     EXPECT_TRUE(refused({{0}}, {}));
     EXPECT_TRUE(refused({{0, 1}}, channels));
-    EXPECT_TRUE(refused({{kNan}}, channels));
-    EXPECT_TRUE(refused({{kInf}}, channels));
+    EXPECT_TRUE(refused({{nan}}, channels));
+    EXPECT_TRUE(refused({{inf}}, channels));
     EXPECT_TRUE(refused({{0}}, {{0, 0}}));
-    EXPECT_TRUE(refused({{0}}, {{kNan, 0}}));
+    EXPECT_TRUE(refused({{0}}, {{nan, 0}}));
     EXPECT_TRUE(refused({{0}}, channels, {.limit_mm = 0}));
-    EXPECT_TRUE(refused({{0}}, channels, {.degrees = kNan}));
+    EXPECT_TRUE(refused({{0}}, channels, {.degrees = nan}));
     EXPECT_TRUE(refused({{0}}, channels, {.step_chance = 0}));
     EXPECT_FALSE(refused({{0}}, channels)) << "one point";
     EXPECT_FALSE(refused({{1e9}}, channels));
@@ -205,7 +205,7 @@ TEST(DriftChart, HostileInputIsRefused) {
     points[3].values_mm.pop_back();
     EXPECT_FALSE(learn_drift(points));
     points = learning(rows_of(30, 1, [](int) { return 0; }));
-    points[3].running_s = kNan;
+    points[3].running_s = nan;
     EXPECT_FALSE(learn_drift(points));
     const auto still = learn_drift(learning(std::vector<std::vector<double>>(30, {1.0, 2.0})));
     ASSERT_TRUE(still) << still.error().sentence();

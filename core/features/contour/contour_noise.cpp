@@ -67,8 +67,12 @@ constexpr double kMeasuredApart = 0.75, kMeasuredRise = 0.65;
 // Likeness.
 constexpr std::size_t kLikenessPoints = 100;  // fewer know none
 constexpr std::size_t kLikenessMost = 1000;   // more are not looked at
-constexpr std::size_t kLevelApart = 2;        // two V(s) so many s apart are alike on the level
 constexpr double kLevel = 1.35;               // so far: they scatter
+// V above a level that is none, of a mean of many lines; more is shape.
+constexpr double kRisen = 3, kRisenMost = 8;
+constexpr double kLeastSquare = 1e-300;   // divided by
+constexpr std::size_t kNear = 7;          // lags at which a level is looked for first
+constexpr std::size_t kLevelPoints = 10;  // a profile has so many times the farthest lag
 constexpr double kShared = 4;  // points of a profile for one of a fit that knows its likeness as well
 constexpr double kLikenessNoise = 1e-4;  // steps: less is rounding and shape
 constexpr std::size_t kFewestResiduals = 8, kMostLags = 12;
@@ -103,12 +107,13 @@ double contour_noise_mm(std::span<const double> x, std::span<const double> z, st
     return contour_noise(x, z, scratch).point_mm;
 }
 
-ProfileNoise profile_noise(std::span<const double> x, std::span<const double> z,
-                           std::vector<double>& scratch) {
+ProfileNoise profile_noise(std::span<const double> x, std::span<const double> z, std::vector<double>& scratch,
+                           SharedOver over) {
     ProfileNoise like;
     static_cast<ContourNoise&>(like) = contour_noise(x, z, scratch);
-    constexpr std::size_t kMost = ProfileNoise::kLags + 1 + kLevelApart;
     if (x.size() < kLikenessPoints) return like;
+    constexpr std::size_t kFar = ProfileNoise::kLags + 1, kMost = kFar + kFar / 2;
+    const std::size_t farthest = std::min(kMost, x.size() / kLevelPoints);
     const std::size_t stride = std::max<std::size_t>(x.size() / kLikenessMost, 1);
     std::array<double, kMost + 1> v{};
     std::size_t told = 0;
@@ -119,13 +124,37 @@ ProfileNoise profile_noise(std::span<const double> x, std::span<const double> z,
     const double step = std::abs(x.back() - x.front()) / double(x.size() - 1);
     // The first lag from which on V stands still.
     std::size_t level = 1;
-    const auto still = [&](std::size_t s) {
-        tell(s + kLevelApart);
-        return v[s + kLevelApart] < kLevel * v[s] && v[s + 1] < kLevel * v[s];
+    const auto still = [&](std::size_t s, std::size_t apart) {
+        tell(s + 2 * apart);
+        return v[s + 2 * apart] < kLevel * v[s] && v[s + apart] < kLevel * v[s];
     };
-    while (level + kLevelApart < kMost && !still(level)) ++level;
-    if (!still(level)) return like;
-    const double whole = (v[level] + v[level + 1] + v[level + 2]) / 3;
+    while (level < kNear && !still(level, 1)) ++level;
+    const bool near = still(level, 1);
+    std::size_t apart = 1;
+    if (!near && over == SharedOver::few) return like;
+    if (over == SharedOver::many) {
+        const std::size_t later = near ? std::min(3 * level, farthest) : farthest;
+        tell(later);
+        const double rise =
+            *std::max_element(v.begin() + std::ptrdiff_t(level), v.begin() + std::ptrdiff_t(later) + 1) /
+            std::max(v[level], kLeastSquare);
+        if (!near || rise > kRisen) {
+            std::size_t far = near ? 2 * level : level + 1;
+            const auto quarter = [&] { return far / 4; };
+            const auto within = [&] { return far <= kFar && far + 2 * quarter() <= farthest; };
+            while (within() && !still(far, quarter())) ++far;
+            if (within() && v[far] < kRisenMost * v[level]) {
+                apart = quarter();
+                level = far;
+            } else if (rise < kRisenMost) {  // too few points to see where it ends
+                apart = 0;
+                level = later;
+            } else if (!near) {
+                return like;
+            }
+        }
+    }
+    const double whole = (v[level] + v[level + apart] + v[level + 2 * apart]) / 3;
     if (!(whole > std::pow(kLikenessNoise * step, 2))) return like;
     like.points = double(x.size()) / double(stride) / kShared;
     like.alone_mm = std::sqrt(whole);
@@ -158,7 +187,8 @@ double alike_widening(std::span<const double> residuals, int unknowns, const Pro
     const double given_back = std::min(unknowns * profile.apart() / n, kMostGivenBack);
     double own = 1, both = 1;
     bool own_goes_on = count >= kFewestResiduals, both_goes_on = profile.points > 0;
-    for (std::size_t lag = 1; lag <= kMostLags && (own_goes_on || both_goes_on); ++lag) {
+    for (std::size_t lag = 1; lag <= profile.r.size() && (own_goes_on || both_goes_on); ++lag) {
+        own_goes_on = own_goes_on && lag <= kMostLags;
         double r = 0;
         if (lag <= count / 4) {
             double product = 0;

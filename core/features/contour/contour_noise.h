@@ -31,18 +31,22 @@ double contour_noise_mm(std::span<const double> x, std::span<const double> z, st
 // From the whole profile: V(s), the square of the noise by fourth differences of points s lines apart, is
 //   V(s) = V (1 - 1.6 r(s) + 0.8 r(2 s) - 0.23 r(3 s) + 0.03 r(4 s))
 // for noise whose neighbours at lag s correlate by r(s). Where V(s) no longer grows r is 0, and from there the r of the
-// smaller lags follow one by one. Shape that is not cubic over 4 s lines grows with s^8 and has no such level: then nothing
-// is known (`points` 0), as with fewer than a hundred points.
+// smaller lags follow one by one. Of a mean of w lines V stands still between w / 3 and w / 2 as well, at a fifth of what it
+// is from w on: a level counts when V has not risen at two and three times its lag, or finds no later one. Shape that is
+// not cubic over 4 s lines grows with s^8 and has no level: then nothing is known (`points` 0), as with fewer than a
+// hundred points.
 struct ProfileNoise : ContourNoise {
-    static constexpr std::size_t kLags = 6;
+    static constexpr std::size_t kLags = 24;
     std::array<double, kLags> r{};  // at lag 1, 2, ..
     double points = 0;              // of a fit, that know r as well
     double alone_mm = 0;            // of a point, none of it hidden by neighbours that share it; 0: not known
     // 1 + 2 (r_1 + ..), of what stands out of chance: of a mean, so many lines count as one.
     double apart() const;
 };
-ProfileNoise profile_noise(std::span<const double> x, std::span<const double> z,
-                           std::vector<double>& scratch);
+// How many lines may share it: a level is looked for up to lag 7, or up to 24.
+enum class SharedOver { few, many };
+ProfileNoise profile_noise(std::span<const double> x, std::span<const double> z, std::vector<double>& scratch,
+                           SharedOver over = SharedOver::few);
 
 // Factor of the variances that a least-squares fit of `unknowns` parameters states for independent points, from its
 // residuals in contour order and from what the profile knows beside them:

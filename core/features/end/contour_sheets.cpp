@@ -273,9 +273,11 @@ void ContourSheets::gather(const Profile& profile, const FeatureWindow& window, 
         segment_.push_back(marked ? profile.segment[i] : 0);
     }
     pitch_ = contour_pitch(all_x_, all_z_, scratch_);
-    profile_noise_ = profile_noise(all_x_, all_z_, scratch_);
+    profile_noise_ = profile_noise(all_x_, all_z_, scratch_, SharedOver::many);
+    // Sheets are divided by what neighbours show for certain: a lap's step is not to pass for a mean of many.
+    const ProfileNoise neighbours = profile_noise(all_x_, all_z_, scratch_);
     noise_ = profile_noise_.point_mm;
-    lines_ = Lines(std::max(1.0, profile_noise_.measured_apart), kInterpolatedApart * profile_noise_.apart());
+    lines_ = Lines(std::max(1.0, neighbours.measured_apart), kInterpolatedApart * neighbours.apart());
     if (!marked)
         for (std::size_t i = 1; i < all_x_.size(); ++i) {
             const double dx = all_x_[i] - all_x_[i - 1], dz = all_z_[i] - all_z_[i - 1];

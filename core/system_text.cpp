@@ -1,6 +1,7 @@
 #include "core/system_text.h"
 
 #include <cerrno>
+#include <string_view>
 
 namespace seamwright {
 
@@ -86,9 +87,9 @@ Text system_text(int number) {
 }
 
 Text system_text(const std::error_code& error) {
-    const bool of_system =
-        error.category() == std::system_category() || error.category() == std::generic_category();
-    return of_system ? system_text(error.value()) : Text(error.message());
+    // By name: Boost's categories of the same numbers are others than the standard's.
+    const std::string_view category = error.category().name();
+    return category == "system" || category == "generic" ? system_text(error.value()) : Text(error.message());
 }
 
 }  // namespace seamwright

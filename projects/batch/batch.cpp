@@ -121,7 +121,7 @@ class Waiting {
         std::vector<int> begin;
         for (const int task : missing())
             if (!living.contains(task)) begin.push_back(task);
-        if (living.size() > 0) tell(Text("{} tasks are on their way already", living.size()));
+        if (!living.empty()) tell(Text("{} tasks are on their way already", living.size()));
         if (!begin.empty()) {
             for (const int task : begin) {
                 std::error_code error;

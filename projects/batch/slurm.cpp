@@ -76,7 +76,8 @@ bool in_path(const std::string& program) {
     for (std::size_t at = 0; at <= folders.size();) {
         const auto end = std::min(folders.find(':', at), folders.size());
         const std::string folder = folders.substr(at, end - at);
-        if (!folder.empty() && ::access((std::filesystem::path(folder) / program).c_str(), X_OK) == 0) return true;
+        if (!folder.empty() && ::access((std::filesystem::path(folder) / program).c_str(), X_OK) == 0)
+            return true;
         at = end + 1;
     }
     return false;

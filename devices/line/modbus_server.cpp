@@ -12,9 +12,8 @@
 #include <list>
 #include <thread>
 
-#include "devices/line/modbus_station.h"
-
 #include "core/system_text.h"
+#include "devices/line/modbus_station.h"
 
 namespace seamwright {
 namespace {

@@ -32,9 +32,9 @@ double contour_noise_mm(std::span<const double> x, std::span<const double> z, st
 //   V(s) = V (1 - 1.6 r(s) + 0.8 r(2 s) - 0.23 r(3 s) + 0.03 r(4 s))
 // for noise whose neighbours at lag s correlate by r(s). Where V(s) no longer grows r is 0, and from there the r of the
 // smaller lags follow one by one. Of a mean of w lines V stands still between w / 3 and w / 2 as well, at a fifth of what it
-// is from w on: a level counts when V has not risen at two and three times its lag, or finds no later one. Shape that is
-// not cubic over 4 s lines grows with s^8 and has no level: then nothing is known (`points` 0), as with fewer than a
-// hundred points.
+// is from w on: where V has risen up to three times a level's lag, a later level counts, or in short profiles the last lag.
+// Shape that is not cubic over 4 s lines grows with s^8, by more than eight times, and has no level: then nothing is known
+// (`points` 0), as with fewer than a hundred points.
 struct ProfileNoise : ContourNoise {
     static constexpr std::size_t kLags = 24;
     std::array<double, kLags> r{};  // at lag 1, 2, ..

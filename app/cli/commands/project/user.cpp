@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 
 #include "app/cli/command.h"
 #include "app/cli/sign_in.h"

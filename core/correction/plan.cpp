@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/correction/forecast.h"
+#include "core/correction/predicted.h"
 #include "core/correction/region_system.h"
 #include "core/correction/travel.h"
 #include "core/geometry/notation.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/correction/forecast.h"
+#include "core/correction/predicted.h"
 #include "core/correction/region_system.h"
 #include "core/correction/travel.h"
 #include "core/geometry/notation.h"

@@ -5,7 +5,7 @@
 #include <functional>
 #include <limits>
 
-#include "core/correction/forecast.h"
+#include "core/correction/predicted.h"
 #include "core/correction/sigma.h"
 #include "core/correction/travel.h"
 #include "core/numbers.h"

@@ -12,7 +12,7 @@
 #include "core/geometry/notation.h"
 #include "devices/exchange/tables/csv_table.h"
 #include "devices/exchange/tables/point_table.h"
-#include "devices/robot_path/words/tokens.h"
+#include "devices/exchange/words/tokens.h"
 
 namespace seamwright {
 namespace {

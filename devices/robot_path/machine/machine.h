@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "devices/robot_path/robot_path.h"
-#include "devices/robot_path/words/tokens.h"
+#include "devices/exchange/words/tokens.h"
 
 namespace seamwright::program_path {
 

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "core/correction/budget/monte_carlo.h"
-#include "core/correction/forecast.h"
+#include "core/correction/predicted.h"
 #include "core/correction/travel.h"
 #include "tests/core/correction/trials.h"
 

@@ -8,7 +8,7 @@
 #include <Eigen/Cholesky>
 #include <array>
 
-#include "core/correction/forecast.h"
+#include "core/correction/predicted.h"
 #include "tests/core/correction/trials.h"
 
 namespace seamwright {

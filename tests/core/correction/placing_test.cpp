@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-#include "core/correction/forecast.h"
+#include "core/correction/predicted.h"
 #include "core/correction/travel.h"
 
 namespace seamwright {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/correction/correction.h"
-#include "core/correction/forecast.h"
+#include "core/correction/predicted.h"
 #include "core/geometry/decompositions.h"
 #include "tests/core/correction/doors.h"
 #include "tests/core/english.h"

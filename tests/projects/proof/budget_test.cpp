@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-#include "core/correction/forecast.h"
+#include "core/correction/predicted.h"
 #include "core/correction/travel.h"
 #include "core/geometry/notation.h"
 #include "projects/measure/measure.h"

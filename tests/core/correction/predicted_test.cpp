@@ -1,4 +1,4 @@
-#include "core/correction/forecast.h"
+#include "core/correction/predicted.h"
 
 #include <gtest/gtest.h>
 

@@ -26,7 +26,7 @@ struct Token {
 // Never fails: what no word begins with is a sign. Comments, KRL's & lines and URScript's $ lines are left out.
 std::vector<Token> tokens_of(std::string_view text, Dialect dialect);
 
-// A statement that cannot be read. Ends within this folder, as a note of its line.
+// A statement that cannot be read. Ends in devices/robot_path, as a note of its line.
 struct Misread : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

@@ -1,4 +1,4 @@
-#include "devices/robot_path/words/tokens.h"
+#include "devices/exchange/words/tokens.h"
 
 #include <fmt/format.h>
 

@@ -36,7 +36,7 @@ struct FeaturePoints {
 
     void gather(const Profile& profile, const FeatureWindow& window);
     // Of the whole profile that was gathered last.
-    ProfileNoise noise() { return profile_noise(all_x_, all_z_, scratch_); }
+    ProfileNoise noise(SharedOver over) { return profile_noise(all_x_, all_z_, scratch_, over); }
 
   private:
     std::vector<double> all_x_, all_z_, scratch_;

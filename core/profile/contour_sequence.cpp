@@ -16,6 +16,10 @@ constexpr double kLeastRun = 1e-12;                               // of its rise
 constexpr double kLeastSpacing = 1e-9, kLeastSpacing_mm = 1e-12;  // the former of the coordinates
 // In outliers: what a point of unknown direction costs more behind lines that are left out.
 constexpr double kAfterSkip = 0.5;
+constexpr int kSharedLags[] = {3, 5};
+constexpr std::size_t kFewestThird = 40;
+constexpr double kSharedSeen = 1.4;   // of the noise beside: less is chance
+constexpr double kEvenly = 1e-4;      // of the spacing
 constexpr double kNoiseFloor = 0.03;  // of the spacing: below it the direction decides, not the noise
 
 double quantile(std::vector<double>& values, double share) {
@@ -106,6 +110,27 @@ Scale estimate_scale(Workspace& w, const std::vector<int>& pick, bool along_path
     }
     scale.sx = sigma_of(a, along_path);
     scale.sz = sigma_of(b, along_path);
+    // On an even grid of x neighbours may share their noise (interpolation, a median) and hide it; points some lines apart do not.
+    // By third differences: over so many lines a bend is no line, but nearly an arc.
+    const bool evenly = scale.sx < kEvenly * scale.spacing;
+    const auto third = [&](int lag) {
+        b.clear();
+        for (int k = 0, step = std::max(1, n / samples); k + 3 * lag < n; k += step) {
+            const Candidate &p = at(k), &c = at(k + lag), &q = at(k + 2 * lag), &r = at(k + 3 * lag);
+            const auto broken = [&] {
+                for (int i = k + 1; i <= k + 3 * lag; ++i)
+                    if (w.nodes[std::size_t(pick[std::size_t(i)])].link != Link::smooth) return true;
+                return false;
+            };
+            if (r.line - p.line == 3 * lag && !broken()) b.push_back(std::abs(p.z - 3 * c.z + 3 * q.z - r.z));
+        }
+        return b.size() < kFewestThird ? 0.0 : sigma_of(b, along_path);
+    };
+    if (const double beside = evenly && along_path ? third(1) : 0; beside > 0) {
+        double hidden = 1;
+        for (const int lag : kSharedLags) hidden = std::max(hidden, third(lag) / beside);
+        if (hidden > kSharedSeen) scale.sz *= hidden;
+    }
     // Neighbours are rounded alike, which shows no noise and then a step of a whole quantum.
     a.clear(), b.clear();
     for (const int k : pick)

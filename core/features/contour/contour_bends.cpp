@@ -87,7 +87,10 @@ void ContourBends::divide() {
             way += std::hypot(node_x_[std::size_t(i)] - node_x_[std::size_t(i) - 1],
                               node_z_[std::size_t(i)] - node_z_[std::size_t(i) - 1]);
     }
-    noise_ = std::max(contour_noise_mm(node_x_, node_z_, scratch_), kNoiseOfStep * way / std::max(n - 1, 1));
+    // Neighbours that share their noise hide it, and a stretch of them knows its line no better than the few they count as.
+    const ProfileNoise noise = profile_noise(node_x_, node_z_, scratch_, SharedOver::many);
+    noise_ = std::max(
+        {noise.point_mm, noise.alone_mm * std::sqrt(noise.apart()), kNoiseOfStep * way / std::max(n - 1, 1)});
     // Smallest eigenvalue of the scatter: the sum of squared distances from the line.
     const auto misfit = [&](int a, int b) {
         const double m = b - a;
@@ -130,6 +133,22 @@ const std::vector<Bend>& ContourBends::find(std::span<const double> x, std::span
     if (node_x_.size() < 2 * kFewestNodes) return bends_;
     divide();
     std::erase_if(stretches_, [&](const Stretch& s) { return s.length() < 2 * blend_mm; });
+    const auto uncertain = [&](const Stretch& s) {
+        const double nodes = s.last - s.first + 1, length = std::max(s.length(), noise_);
+        return 12 * noise_ * noise_ / (nodes * length * length);
+    };
+    const auto turns = [&](const Stretch& a, const Stretch& b) {
+        return std::abs(turn_between(a.direction, b.direction)) >=
+               std::max(least_angle_rad, kTurnSigma * std::sqrt(uncertain(a) + uncertain(b)));
+    };
+    // A stretch too short to know its own direction, of a small radius, hides the turn between its neighbours.
+    for (std::size_t i = 1; i + 1 < stretches_.size();) {
+        const Stretch &before = stretches_[i - 1], &here = stretches_[i], &after = stretches_[i + 1];
+        if (!turns(before, here) && !turns(here, after) && turns(before, after))
+            stretches_.erase(stretches_.begin() + std::ptrdiff_t(i));
+        else
+            ++i;
+    }
     const std::size_t m = stretches_.size();
     if (m < 2) return bends_;
 
@@ -153,11 +172,7 @@ const std::vector<Bend>& ContourBends::find(std::span<const double> x, std::span
         const double turn = turn_between(a.direction, b.direction);
         Joint joint = Joint::smooth;
         Eigen::Vector2d place;
-        const auto uncertain = [&](const Stretch& s) {
-            const double nodes = s.last - s.first + 1, length = std::max(s.length(), noise_);
-            return 12 * noise_ * noise_ / (nodes * length * length);
-        };
-        if (std::abs(turn) >= std::max(least_angle_rad, kTurnSigma * std::sqrt(uncertain(a) + uncertain(b))))
+        if (turns(a, b))
             joint = meet(a, b, place) ? Joint::bend : Joint::jump;
         else {
             // One beside the other: a step.

@@ -1,6 +1,7 @@
 #include "core/features/end/end_curve.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -13,13 +14,19 @@ namespace {
 constexpr double kEndGate = 3.5;  // sigma
 constexpr double kEndSmallest_mm = 1e-9;
 constexpr std::size_t kEndFewestRounded = 6;  // points that know a curvature and their noise
-constexpr double kEndAkaike = 2;         // times its variance: a coefficient squared that is worth its noise
-constexpr double kEndPointsKept = 0.75;  // of the line's, for an arc to be better
-constexpr double kEndLeastVariance = 1e-300;  // of a curvature: divided by
-constexpr double kEndSingular = 1e-9;         // reciprocal condition
-constexpr double kEndMostTurned_rad = 1.5;    // over one sigma of the points' spread
-constexpr double kEndShortestStep = 0.01;     // of Gauss and Newton's
-constexpr double kEndSettled = 1e-9;          // of the points' spread: a change of the bow
+constexpr std::size_t kEndFewestOnArc = 3;    // points behind its beginning
+constexpr int kEndGateRounds = 6;
+constexpr double kEndPointsKept = 0.75;  // of the robust line's, for other curves to be better
+constexpr double kEndBent = 1.5;         // sigma of the curvature expected, over the points' extent
+// Of the points' extent: the arc's part, the whole first.
+constexpr double kEndArcs[] = {1, 0.82, 0.66, 0.52, 0.4, 0.3, 0.22, 0.15};
+constexpr double kEndOnTheLine = 1e-6;  // of a length: points of an even grid stand at such places
+constexpr double kEndStraightPrior = 0.7;
+constexpr double kEndSingular = 1e-9;       // reciprocal condition
+constexpr double kEndMostTurned_rad = 1.5;  // over one sigma of the points' spread
+constexpr double kEndShortestStep = 0.01;   // of Gauss and Newton's
+constexpr double kEndSettled = 1e-9;        // of the points' spread: a change of the bow
+constexpr double kEndLeastWeight = 1e-4;    // of the likeliest: less is not carried on
 
 EndCurve straight(const LineFit& line) {
     EndCurve curve;
@@ -36,78 +43,115 @@ EndCurve straight(const LineFit& line) {
     return curve;
 }
 
-// Between the chord of the kept points (share 0) and the arc through them.
-void shrink(double share, EndCurve& curve) {
-    const double turn =
-        std::atan2(curve.chord.x() * curve.direction.y() - curve.chord.y() * curve.direction.x(),
-                   curve.chord.dot(curve.direction));
-    curve.centre = curve.mean + share * (curve.centre - curve.mean);
-    curve.direction = curve.chord;
-    curve.move(0, share * turn, 0);
-    curve.curvature *= share;
-}
-
 }  // namespace
 
-EndFit::Result EndFit::fit(std::span<const double> x, std::span<const double> z, const ProfileNoise& noise) {
+std::span<const EndCurve> EndFit::fit(std::span<const double> x, std::span<const double> z,
+                                      const ProfileNoise& noise) {
     x_ = x;
     z_ = z;
     workspace_.noise = noise;
-    Result result;
+    curves_.clear();
     const LineFit line = fit_line(x, z, workspace_);
-    if (!line.ok) return result;
-    result.ok = true;
-    result.curve = straight(line);
-    result.rounded = fit_arc(line, result.curve);
-    return result;
+    if (!line.ok) return {};
+    if (x_.size() < kEndFewestRounded || !try_curves(static_cast<int>(kEndPointsKept * line.used)))
+        curves_.assign(1, straight(line));
+    return curves_;
 }
 
-// Replaces `curve`, the line, where an arc explains the points better.
-bool EndFit::fit_arc(const LineFit& line, EndCurve& curve) {
-    if (x_.size() < kEndFewestRounded) return false;
-    const double line_median = median_residual(curve);
-    EndCurve trial = curve;
+// All curves through the points that belong to the likeliest; false: they know no arc.
+bool EndFit::try_curves(int fewest_used) {
     keep_.assign(x_.size(), 1);
-    for (int round = 0; round < 12; ++round) {
-        if (!least_squares(trial)) return false;
-        const double sigma = std::max(kMadToSigma * median_residual(trial), workspace_.noise.point_mm);
+    const double length = (point(0) - point(x_.size() - 1)).norm();
+    const double noise = std::max(workspace_.noise.point_mm, workspace_.noise.alone_mm);
+    const double curvature_weight = 4 * std::pow(noise * length / kEndBent, 2);
+    for (int round = 0; round < kEndGateRounds; ++round) {
+        curves_.clear();
+        EndCurve line;
+        if (!line_of_kept(line)) return false;
+        curves_.push_back(line);
+        std::size_t on_arc = x_.size() + 1;
+        for (const double share : kEndArcs) {
+            EndCurve curve = line;
+            curve.straight_before = share < 1;
+            const double reach = share * (1 + kEndOnTheLine) * length;
+            const auto first = [&] {  // of the points before the arc
+                std::size_t i = 0;
+                while (i < x_.size() && (point(i) - point(0)).norm() <= reach) ++i;
+                return i;
+            };
+            const std::size_t count = share < 1 ? first() : x_.size();
+            if (count == on_arc) continue;
+            on_arc = count;
+            if (count < kEndFewestOnArc) break;
+            if (share < 1) {
+                const Eigen::Vector2d from = 0.5 * (point(count - 1) + point(std::min(count, x_.size() - 1)));
+                curve.centre += curve.direction * curve.direction.dot(from - curve.centre);
+            }
+            if (least_squares(curve, curvature_weight)) curves_.push_back(curve);
+        }
+        if (curves_.size() < 2) return false;
+        weigh();
+        const EndCurve& best = curves_.front();
+        if (best.used < fewest_used) return false;
+        const double sigma = std::max(kMadToSigma * median_residual(best), workspace_.noise.point_mm);
         const double gate = std::max(kEndGate * sigma, kEndSmallest_mm);
         bool changed = false;
         for (std::size_t i = 0; i < x_.size(); ++i) {
-            const std::uint8_t in = std::abs(trial.residual(point(i))) <= gate;
+            const std::uint8_t in = std::abs(best.residual(point(i))) <= gate;
             changed = changed || in != keep_[i];
             keep_[i] = in;
         }
         if (!changed) break;
     }
-    if (trial.used < kEndPointsKept * line.used || median_residual(trial) > line_median) return false;
-    trial.alike = alike(trial);
-    const double variance = trial.widening * trial.sigma_mm * trial.sigma_mm * trial.cofactor(2, 2);
-    const double t2 = 0.25 * trial.curvature * trial.curvature / std::max(variance, kEndLeastVariance);
-    if (!(t2 > kEndAkaike)) return false;
-    trial.cubic_misfit = cubic(trial);
-    // Towards the line of the same points, their chord.
-    Eigen::Matrix3d line_cofactor = Eigen::Matrix3d::Zero();
-    line_cofactor(0, 0) = 1.0 / trial.used;
-    line_cofactor(1, 1) = 1 / trial.spread_mm2;
-    const Eigen::Matrix3d bow = trial.cofactor - line_cofactor;
-    shrink(1 - kEndAkaike / t2, trial);
-    trial.cofactor = line_cofactor + std::min(t2 - kEndAkaike, 1.0) * bow;
-    curve = trial;
+    for (EndCurve& curve : curves_) curve.cubic_misfit = cubic(curve);
     return true;
 }
 
+// Weights by evidence, with one sigma for all: what the points scatter about the best of them.
+void EndFit::weigh() {
+    const double length = (point(0) - point(x_.size() - 1)).norm();
+    const EndCurve* closest = &curves_.front();
+    for (const EndCurve& curve : curves_)
+        if (curve.sigma_mm < closest->sigma_mm) closest = &curve;
+    const double interpolated = std::max(1.0, 1.5 * workspace_.noise.measured_apart);
+    const double sigma = std::max(closest->sigma_mm, kEndSmallest_mm);
+    const double variance = sigma * sigma * closest->widening * std::max(alike(*closest), interpolated);
+    const double arcs = double(curves_.size() - 1), bend = kEndBent / length;
+    evidence_.clear();
+    double most = -1e300;
+    for (const EndCurve& curve : curves_) {
+        // |cofactor| relative to the line's cancels the units of offset and turn.
+        const bool line = curve.curvature == 0 && !(curve.cofactor(2, 2) > 0);
+        const double determinant = line ? curve.cofactor(0, 0) * curve.cofactor(1, 1)
+                                        : curve.cofactor.determinant() * variance * 4 / (bend * bend);
+        const double prior = line ? kEndStraightPrior : (1 - kEndStraightPrior) / arcs;
+        const double chi2 = (squares(curve)) / variance + (line ? 0 : std::pow(curve.curvature / bend, 2));
+        evidence_.push_back(std::log(prior) + 0.5 * std::log(std::max(determinant, 1e-300)) - 0.5 * chi2);
+        most = std::max(most, evidence_.back());
+    }
+    for (std::size_t j = 0; j < curves_.size(); ++j) curves_[j].weight = std::exp(evidence_[j] - most);
+    std::erase_if(curves_, [](const EndCurve& curve) { return curve.weight < kEndLeastWeight; });
+    double sum = 0;
+    for (const EndCurve& curve : curves_) sum += curve.weight;
+    for (EndCurve& curve : curves_) curve.weight /= sum;
+    std::sort(curves_.begin(), curves_.end(),
+              [](const EndCurve& a, const EndCurve& b) { return a.weight > b.weight; });
+    for (EndCurve& curve : curves_) curve.alike = alike(curve);
+}
+
 // The cubic part (s^3, free of the arc's) of the kept points' residuals, without what noise alone
-// makes of it; as coefficients of 1, s, s^2, s^3.
+// makes of it; as coefficients of powers().
 Eigen::Vector4d EndFit::cubic(const EndCurve& curve) const {
+    if (curve.curvature == 0) return Eigen::Vector4d::Zero();
     const double size = std::sqrt(curve.spread_mm2 / curve.used);
+    const Eigen::Vector4d unit(1, 1 / size, 1 / (size * size), 1 / (size * size * size));
     Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
     Eigen::Vector4d right = Eigen::Vector4d::Zero();
     double rss = 0;
     for (std::size_t i = 0; i < x_.size(); ++i) {
         if (!keep_[i]) continue;
-        const double s = curve.along(point(i)) / size, e = curve.residual(point(i));
-        const Eigen::Vector4d r(1, s, s * s, s * s * s);
+        const double e = curve.residual(point(i));
+        const Eigen::Vector4d r = unit.asDiagonal() * curve.powers(curve.along(point(i)));
         normal += r * r.transpose();
         right += e * r;
         rss += e * e;
@@ -121,12 +165,11 @@ Eigen::Vector4d EndFit::cubic(const EndCurve& curve) const {
                             solver.solve(Eigen::Vector4d::Unit(3))[3];
     const double excess = b[3] * b[3] - variance;
     if (!(excess > 0)) return Eigen::Vector4d::Zero();
-    const Eigen::Vector4d unit(1, 1 / size, 1 / (size * size), 1 / (size * size * size));
     return std::sqrt(excess) / std::abs(b[3]) * unit.asDiagonal() * b;
 }
 
-// Chord and arc of the kept points; false when they know none.
-bool EndFit::least_squares(EndCurve& curve) const {
+// Total least squares through the kept points.
+bool EndFit::line_of_kept(EndCurve& curve) {
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
     int used = 0;
     for (std::size_t i = 0; i < x_.size(); ++i)
@@ -144,15 +187,33 @@ bool EndFit::least_squares(EndCurve& curve) const {
             xz += d.x() * d.y();
             zz += d.y() * d.y();
         }
-    const double size = std::sqrt((xx + zz) / used);
-    if (!(size > kEndSmallest_mm)) return false;
+    if (!(std::sqrt((xx + zz) / used) > kEndSmallest_mm)) return false;
     const double angle = 0.5 * std::atan2(2 * xz, xx - zz);
-    curve.centre = curve.mean = mean;
+    curve.centre = mean;
     curve.direction = {std::cos(angle), std::sin(angle)};
     if (curve.direction.dot(point(0) - point(x_.size() - 1)) < 0) curve.direction = -curve.direction;
     curve.chord = curve.direction;
-    curve.curvature = 0;
-    double rss = squares(curve);
+    curve.used = used;
+    curve.spread_mm2 = xx * curve.chord.x() * curve.chord.x() + 2 * xz * curve.chord.x() * curve.chord.y() +
+                       zz * curve.chord.y() * curve.chord.y();
+    curve.cofactor(0, 0) = 1.0 / used;
+    curve.cofactor(1, 1) = 1 / curve.spread_mm2;
+    const double rss = squares(curve);
+    curve.rms_mm = std::sqrt(rss / used);
+    const PooledSigma pooled = pooled_sigma(std::sqrt(rss / (used - 2)), used - 2, workspace_.noise);
+    curve.sigma_mm = pooled.sigma_mm;
+    curve.widening = pooled.widening;
+    return true;
+}
+
+// From the line through the kept points, its centre where the arc begins. `curvature_weight`: by which squares of half the
+// curvature count beside those of the residuals. False: they know none.
+bool EndFit::least_squares(EndCurve& curve, double curvature_weight) const {
+    const double size = std::sqrt(curve.spread_mm2 / curve.used);
+    const auto cost = [&] {
+        return squares(curve) + 0.25 * curvature_weight * curve.curvature * curve.curvature;
+    };
+    double least = cost();
     // Gauss-Newton, in units of `size`, so that the equations are as well conditioned at every scale.
     const Eigen::Vector3d unit(1, 1 / size, 1 / (size * size));
     for (int round = 0; round < 8; ++round) {
@@ -160,11 +221,12 @@ bool EndFit::least_squares(EndCurve& curve) const {
         Eigen::Vector3d right = Eigen::Vector3d::Zero();
         for (std::size_t i = 0; i < x_.size(); ++i)
             if (keep_[i]) {
-                const double s = curve.along(point(i)) / size;
-                const Eigen::Vector3d r(1, s, s * s);
+                const Eigen::Vector3d r = unit.asDiagonal() * curve.powers(curve.along(point(i))).head<3>();
                 normal += r * r.transpose();
                 right += curve.residual(point(i)) * r;
             }
+        normal(2, 2) += curvature_weight * unit[2] * unit[2];
+        right[2] -= curvature_weight * unit[2] * 0.5 * curve.curvature;
         const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
         if (!(solver.rcond() > kEndSingular)) return false;
         const Eigen::Vector3d b = unit.asDiagonal() * Eigen::Vector3d(solver.solve(right));
@@ -174,9 +236,9 @@ bool EndFit::least_squares(EndCurve& curve) const {
         for (; share > kEndShortestStep; share /= 2) {
             curve = before;
             curve.move(share * b[0], share * b[1], share * 2 * b[2]);
-            const double now = squares(curve);
-            if (now > rss) continue;
-            rss = now;
+            const double now = cost();
+            if (now > least) continue;
+            least = now;
             break;
         }
         curve.cofactor = unit.asDiagonal() * Eigen::Matrix3d(solver.solve(Eigen::Matrix3d::Identity())) *
@@ -184,11 +246,9 @@ bool EndFit::least_squares(EndCurve& curve) const {
         if (!(std::abs(curve.curvature) * size < kEndMostTurned_rad)) return false;
         if (share <= kEndShortestStep || std::abs(b[2]) * size * size < kEndSettled * size) break;
     }
-    const int freedom = used - 3;
-    curve.used = used;
-    curve.spread_mm2 = xx * curve.chord.x() * curve.chord.x() + 2 * xz * curve.chord.x() * curve.chord.y() +
-                       zz * curve.chord.y() * curve.chord.y();
-    curve.rms_mm = std::sqrt(rss / used);
+    const int freedom = curve.used - 3;
+    const double rss = squares(curve);
+    curve.rms_mm = std::sqrt(rss / curve.used);
     const PooledSigma pooled = pooled_sigma(std::sqrt(rss / freedom), freedom, workspace_.noise);
     curve.sigma_mm = pooled.sigma_mm;
     curve.widening = pooled.widening;
@@ -206,7 +266,7 @@ double EndFit::alike(const EndCurve& curve) {
     scratch_.clear();
     for (std::size_t i = 0; i < x_.size(); ++i)
         if (keep_[i]) scratch_.push_back(curve.residual(point(i)));
-    return alike_widening(scratch_, 3, workspace_.noise);
+    return alike_widening(scratch_, curve.curvature == 0 ? 2 : 3, workspace_.noise);
 }
 
 double EndFit::median_residual(const EndCurve& curve) {

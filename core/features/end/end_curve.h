@@ -1,17 +1,23 @@
 #pragma once
-// A contour near its end as a line or, where it is rounded there, an arc of a circle (methods.md 2).
+// A contour near its end: straight, an arc of a circle, or straight and then an arc (methods.md 2), each as likely as the
+// points make it.
 //
-// The line is fit_line()'s. The arc goes through the points within 3.5 robust sigma of it (median size of the residuals, not
-// less than the profile's noise; iterated), by Gauss-Newton on their distances from it:
-//     residual(p) = b0 + b1 s + b2 s^2,   s along the arc, outwards; an offset, a turn and half a change of curvature.
-// A hem seen to its steep end turns by 80 degrees over the points: a parabola over their chord would see less of the slope
-// there than there is. With T = (curvature / sigma(curvature))^2 the arc counts by w = 1 - 2 / T, between it and the chord of
-// its points, and not at all for T < 2 (Akaike's limit: it is not worth its noise), when it loses more than a quarter of
-// the line's points, or when it leaves a larger median residual than the line. Without it a robust line takes the rounded
-// end, or the flat before it, for outliers and says confidently where neither of them is.
+// How far a rounded end reaches back is not known, and over the few points of a hem the flat before it looks like a part of
+// the arc. So there is not one curve but several: the line, the arc through all points, and an arc that begins at one of
+// seven places, nearer and nearer to the end, behind a tangent straight piece. By Gauss-Newton on the points' distances:
+//     residual(p) = b0 + b1 s + b2 bow(s),   bow = s^2 on the arc, 0 before it;
+// s along the curve, outwards, from where the arc begins; an offset, a turn and half a change of curvature. A hem seen to its
+// steep end turns by 80 degrees over the points: a parabola over their chord would see less of the slope there than there is.
+// Curvatures are expected about 0 with sigma 1.5 / L, L the points' extent; the line is there in 7 cases of 10. Then
+// curve j counts by its evidence
+//     w_j ~ prior_j |H_j|^(-1/2) exp(-chi2_j / 2),   H_j the information of (b0, b1, b2), chi2_j with the prior's part,
+// and what is asked at the end is the mean over the curves; that they differ there is part of its covariance. One curve alone is
+// too sure: the line and the arc of a gentle bend explain the same points and end apart.
+// Points count within 3.5 robust sigma of the likeliest curve (median size of the residuals, not less than the profile's noise;
+// iterated). Where that would leave less than three quarters of the robust line's points, that line is the only curve: without an
+// arc it takes the rounded end, or the flat before it, for outliers and says confidently where neither of them is.
 //
-// Noise model: equal, across the contour; neighbours may share it (contour_noise.h). Variances:
-// v_line + min(T - 2, 1) (v_arc - v_line). Units mm, rad.
+// Noise model: equal, across the contour; neighbours may share it (contour_noise.h). Units mm, rad.
 // Degenerate: fewer than 6 points, all of them in one place, or turned by more than a half circle, know no arc.
 
 #include <Eigen/Core>
@@ -25,35 +31,43 @@ namespace seamwright {
 
 // s along it, outwards, from `centre`. Curvature 0: a line.
 struct EndCurve {
-    Eigen::Vector2d centre = Eigen::Vector2d::Zero();                                  // on it, s = 0
-    Eigen::Vector2d direction = Eigen::Vector2d::UnitX();                              // there, outwards
-    Eigen::Vector2d mean = Eigen::Vector2d::Zero(), chord = Eigen::Vector2d::UnitX();  // of its points
-    double curvature = 0;  // 1/mm, along the normal
+    Eigen::Vector2d centre = Eigen::Vector2d::Zero();      // on it, s = 0
+    Eigen::Vector2d direction = Eigen::Vector2d::UnitX();  // there, outwards
+    Eigen::Vector2d chord = Eigen::Vector2d::UnitX();      // of its points
+    double curvature = 0;                                  // 1/mm, along the normal
+    bool straight_before = false;                          // the arc begins at s = 0
     double sigma_mm = 0, rms_mm = 0;
     int used = 0;
-    double spread_mm2 = 0;  // sum of squared distances from the centre along the chord
-    // What is other than an arc: the residuals' cubic part, without what noise makes of it; of 1, s, s^2, s^3.
+    double spread_mm2 = 0;  // sum of squared distances from the points' middle along the chord
+    // What is other than the curve: the residuals' cubic part, without what noise makes of it; of powers().
     Eigen::Vector4d cubic_misfit = Eigen::Vector4d::Zero();
-    // Of (offset, turn, curvature / 2), without the noise: (sum r r^T)^-1, r = (1, s, s^2). Line: of the first two only.
+    // Of (offset, turn, curvature / 2), without the noise: (sum r r^T)^-1, r = (1, s, bow(s)). Line: of the first two only.
     Eigen::Matrix3d cofactor = Eigen::Matrix3d::Zero();
     double widening = 1;  // of variances, for sigma being estimated from few points
     double alike = 1;     // of variances, for neighbours that share their noise (contour_noise.h)
+    double weight = 1;    // among the curves of the same points
 
     Eigen::Vector2d normal() const { return {-direction.y(), direction.x()}; }
+    bool straight_at(double s) const { return curvature == 0 || (straight_before && s < 0); }
+    double bow(double s) const { return straight_before && s < 0 ? 0 : s * s; }
+    Eigen::Vector4d powers(double s) const { return {1, s, bow(s), s * s * s}; }
     double along(const Eigen::Vector2d& p) const {
         const Eigen::Vector2d v = p - centre;
         const double on = direction.dot(v);
-        return curvature == 0 ? on : std::atan2(curvature * on, 1 - curvature * normal().dot(v)) / curvature;
+        return straight_at(on) ? on : std::atan2(curvature * on, 1 - curvature * normal().dot(v)) / curvature;
     }
     double residual(const Eigen::Vector2d& p) const {
         const Eigen::Vector2d v = p - centre;
+        if (straight_at(direction.dot(v))) return normal().dot(v);
         const double q = normal().dot(v) - 0.5 * curvature * v.squaredNorm();
         return 2 * q / (1 + std::sqrt(std::max(1 - 2 * curvature * q, 0.0)));
     }
     Eigen::Vector2d tangent(double s) const {
+        if (straight_at(s)) return direction;
         return std::cos(curvature * s) * direction + std::sin(curvature * s) * normal();
     }
     Eigen::Vector2d at(double s) const {
+        if (straight_at(s)) return centre + s * direction;
         const double half = 0.5 * curvature * s;
         const double length = half == 0 ? s : s * std::sin(half) / half;
         return centre + length * (std::cos(half) * direction + std::sin(half) * normal());
@@ -65,25 +79,24 @@ struct EndCurve {
         curvature += bend;
     }
     double variance_at(double s) const {
-        const Eigen::Vector3d r(1, s, s * s);
+        const Eigen::Vector3d r = powers(s).head<3>();
         return widening * alike * sigma_mm * sigma_mm * r.dot(cofactor * r);
     }
 };
 
 class EndFit {
   public:
-    // Line through the points, from the end inwards, and the arc where that explains them better. `ok` false: they form no
-    // line. `rounded`: the arc it is. `noise`: of the profile.
-    struct Result {
-        bool ok = false, rounded = false;
-        EndCurve curve;
-    };
-    Result fit(std::span<const double> x, std::span<const double> z, const ProfileNoise& noise);
+    // The curves through the points, which come from the end inwards; the likeliest first, weights of sum 1. Empty: they form
+    // no line. `noise`: of the profile. Valid until the next fit.
+    std::span<const EndCurve> fit(std::span<const double> x, std::span<const double> z,
+                                  const ProfileNoise& noise);
 
   private:
     Eigen::Vector2d point(std::size_t i) const { return {x_[i], z_[i]}; }
-    bool fit_arc(const LineFit& line, EndCurve& curve);
-    bool least_squares(EndCurve& curve) const;
+    bool try_curves(int fewest_used);
+    bool line_of_kept(EndCurve& curve);
+    bool least_squares(EndCurve& curve, double curvature_weight) const;
+    void weigh();
     Eigen::Vector4d cubic(const EndCurve& curve) const;
     double squares(const EndCurve& curve) const;
     double alike(const EndCurve& curve);
@@ -92,6 +105,8 @@ class EndFit {
     std::span<const double> x_, z_;
     std::vector<double> scratch_;
     std::vector<std::uint8_t> keep_;
+    std::vector<EndCurve> curves_;
+    std::vector<double> evidence_;
     LineWorkspace workspace_;
 };
 

@@ -211,13 +211,25 @@ void GapSides::divide() {
     std::erase_if(sheets_, [&](const Sheet& sheet) { return sheet.count < std::max(kLeastGround, w); });
 }
 
+bool GapSides::astray(int i, double noise) const {
+    if (!rejected(i)) return false;
+    const auto after = std::lower_bound(raw_.begin(), raw_.end(), i);
+    if (after == raw_.begin() || after == raw_.end()) return true;
+    const int a = *(after - 1), b = *after;
+    const double slope = x_[b] == x_[a] ? 0 : (z_[b] - z_[a]) / (x_[b] - x_[a]);
+    const double off = z_[i] - z_[a] - slope * (x_[i] - x_[a]);
+    return std::abs(off) > kNoiseGate * std::sqrt(1.5) * noise + std::abs(slope) * pitch_;
+}
+
 // The raw point behind which the first part can have no more points: the widest hole between the surfaces or
 // within the end of one of them, for the filter lets a surface go on with the other one's rim. -1: the contour goes on from
 // one to the other.
 int GapSides::break_between(const Core& before, const Core& after) const {
     const double noise = std::max(noise_of(before.first, before.last), noise_of(after.first, after.last));
     // Where single returns may be missing the contour goes on behind them, seen from either side.
+    const auto off_surface = [&](int i) { return (i < before.last || i > after.first) && astray(i, noise); };
     const auto is_break = [&](int i) {
+        if (off_surface(i) || off_surface(i + 1)) return false;
         const int lines = missing(i, i + 1) + 1;
         if (lines > chance_lines_) return true;
         const double rise = z_[i + 1] - z_[i], width = pitch_ * lines;
@@ -269,11 +281,10 @@ double GapSides::noise_of(int first, int last) const {
 int GapSides::walked(int from, int step, int stop, double noise, GapPart& part) const {
     const int w = std::clamp(static_cast<int>(std::ceil(kSlopeNoise * noise / pitch_)), 1, 40);
     const double steeper = kMostDrop * w / (std::sqrt(w + 1.0) - 1);
-    const auto left_out = [&](int i) { return !std::binary_search(raw_.begin(), raw_.end(), i); };
     trail_.clear();
     // A slope that a point beside the contour turns over lets the walk end at once.
     for (int i = from, n = 0; n <= w && i >= 0 && i < static_cast<int>(x_.size()); i -= step) {
-        if (i != from && left_out(i)) continue;
+        if (i != from && rejected(i)) continue;
         trail_.push_back(i);
         ++n;
     }
@@ -305,7 +316,7 @@ int GapSides::walked(int from, int step, int stop, double noise, GapPart& part) 
     // Beside the contour: the filter left it out, and the next goes on without it alone.
     const auto is_spark = [&](int i) {
         const int next = i + step;
-        return next != stop && left_out(i) && judged(before(w), before(0), next) == Step::on &&
+        return next != stop && rejected(i) && judged(before(w), before(0), next) == Step::on &&
                judged(before(w - 1), i, next) != Step::on;
     };
     double entered = 0;  // height of the step to the last point
@@ -413,7 +424,7 @@ GapSides::Found GapSides::find(const Profile& profile, const FeatureWindow& wind
         x_.push_back(x);
         z_.push_back(z);
     }
-    noise_ = points_.noise();
+    noise_ = points_.noise(SharedOver::few);
     pitch_ = points_.pitch.along_x;
     if (x_.size() < 2 || !(pitch_ > 0)) return Found::no_points;
     interleaved_ = interleaved();
@@ -484,8 +495,11 @@ GapSides::Found GapSides::find(const Profile& profile, const FeatureWindow& wind
         part.z.push_back(z_[i]);
     };
     if (ground) take_drawn_steps(before, {after_end, after.last}, last, first);
-    for (int i = last; i >= before.first; --i) take(part_before, i);
-    for (int i = first; i <= after.last; ++i) take(part_after, i);
+    // Behind the rims a point beside the surface is none of it; what was walked to beyond counts.
+    for (int i = last; i >= before.first; --i)
+        if (i > before.last || !astray(i, noise_before)) take(part_before, i);
+    for (int i = first; i <= after.last; ++i)
+        if (i < after_end || !astray(i, noise_after)) take(part_after, i);
     return Found::both;
 }
 

@@ -35,6 +35,7 @@
 // Frame and unit: as the profile, mm. Noise model: sigma across, from the second differences of each part's
 // surface.
 
+#include <algorithm>
 #include <vector>
 
 #include "core/features/feature_points.h"
@@ -95,6 +96,8 @@ class GapSides {
     bool lower(const Sheet& b, const Sheet& a) const;
     Found two_cores(int least, double panel_mm, Core& before, Core& after);
     int break_between(const Core& before, const Core& after) const;
+    bool rejected(int i) const { return !std::binary_search(raw_.begin(), raw_.end(), i); }  // by the filter
+    bool astray(int i, double noise) const;  // rejected, and beside the line of what was not
     double noise_of(int first, int last) const;
     int walked(int from, int step, int stop, double noise, GapPart& part) const;
     int flat_end(int edge, int to_gap, int inmost) const;

@@ -83,7 +83,7 @@ class CircleFinder final : public FeatureFinder {
             feature.message = "no round piece of contour in the window";
             return feature;
         }
-        const ProfileNoise noise = points_.noise();
+        const ProfileNoise noise = points_.noise(SharedOver::many);
         Circle circle = begun;
         const Feature alone = refine(feature, circle, noise);
         return without_rival(with_straights(alone, begun, circle, noise), noise);

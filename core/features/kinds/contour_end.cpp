@@ -1,8 +1,8 @@
 // Contour end ("tear-off"; methods.md 2): where the surface stops, seen from the left or the right.
 //
 // The point. Through the last points before the end, up to fit_length_mm, goes a line, or an arc of a circle where the
-// contour is rounded there (end_curve.h); through those of 0.65 or 0.42 of that length where more is neither (a hem and the flat
-// before it) and they say better where the last point is.
+// contour is rounded there, as far as the points say so: several curves, each by its weight (end_curve.h); through those of 0.65 or
+// 0.42 of that length where more is none of them and they say better where the last point is.
 // The last return is not the end: the surface ends somewhere between it and the next, missing one. The point
 // lies half a pitch p beyond the last point on that curve. p is the median step; on an arc the sensor's
 // steps grow as the surface turns away, so there p is the arc in which the curve advances by the median step
@@ -12,11 +12,12 @@
 //     - an even grid of x whose noise runs from point to point: a sensor measured points f pitches apart and laid them on
 //       the grid (ContourNoise), so that the surface ends up to f p beyond what was measured last.
 //
-// Its covariance, along the tangent at the point and across it. Noise model: independent, equal, across the
+// Its covariance, along the tangent at the point and across it, of the likeliest curve, and beside it how far the curves end
+// apart. Noise model: independent, equal, across the
 // contour, its sigma from the fit's residuals, and not below what the profile's noise beside them makes likely; of
 // interpolated points 1.5 f times the variance, or what the residuals' likeness says (contour_noise.h).
-//     across   v + (k h^2 / 2)^2 + e^2 + d^2 + u n_z^2,   v that of the curve there, h = r - q / 2, k its curvature
-//     along    (r^2 - 2 f p^2) / 12 + (r - q)^2 / 4 + noise^2 + s (l^2 + g^2 / 6) + (m p n_x^2)^2
+//     across   v + (k h^2 / 2)^2 + e^2 + d^2 + u n_z^2,   v the curves' mean there, h = r - q / 2, k the curvature
+//     along    (r^2 - 2 f p^2) / 12 + (r - q)^2 / 4 + noise^2 + s l^2 + g^2 / 36 + (m p n_x^2)^2
 // k h^2 / 2: beyond the last point the contour may bend on or go on straight. e, other shape than an
 // arc: the larger of the residuals' cubic part at the point, without what noise makes of it, and the
 // distance of the last point when the mean of the last three is more than 2.5 sigma / sqrt(3) off. d: a sensor that gives
@@ -38,12 +39,12 @@
 //
 // s, 0 at 65 degrees and 1 at 73: an arc that turns away until the light grazes it. l = 2.5 degrees of it: the angle at which
 // there is too little light for a return scatters with the surface. g: an even grid may have been interpolated from points up to
-// 0.9 of its own steps apart without showing it; so much farther the arc may have gone on beyond a step.
+// 0.9 of its own steps apart without showing it, and the contour may have gone on so much farther; as if one in six had been.
 //
 // What is systematic stays: where light grazes a rounded rim, returns stop before the silhouette, at the
 // teaching as at the measuring. On a fold of 1.15 mm radius that is 0.15 mm; it repeats within the
-// covariance. An arc of fewer than about eight points is not seen as one, nor an interpolation between points that are
-// closer than the grid's: there the end lies up to half a pitch farther out than found, in the mean.
+// covariance. An arc of fewer than about six points is seen by chance. An interpolation from points that are
+// closer than the grid's is not seen: there the end lies up to half a pitch farther out than found, in the mean.
 //
 // Which end is meant: choose_end() (end_choice.h). Degenerate: a contour that runs on beyond the window,
 // leaves the sensor's field or runs under a higher one has no end there (not_found); a sheet shorter than
@@ -85,9 +86,10 @@ constexpr double kEndFewestShort = 6;             // points of such a part that 
 // Of a contour against the line of the sensor: from where on the light grazes it, where it does for certain; how much the
 // angle scatters (sigma) at which the returns stop.
 constexpr double kEndGrazed_rad = 1.13, kEndGrazing_rad = 1.27, kEndLight_rad = 0.044;
-constexpr double kEndEven = 1e-4;        // steps: less is rounding
-constexpr double kEndUnseenApart = 0.9;  // pitches of an interpolation that its noise does not show
-constexpr double kEndFull = 0.75;        // of the intensities' upper quartile: as bright as before the end
+constexpr double kEndEven = 1e-4;  // steps: less is rounding
+// Pitches of an interpolation that its noise does not show; of the square of that: one even grid in six is such a one.
+constexpr double kEndUnseenApart = 0.9, kEndUnseenVariance = 1.0 / 36;
+constexpr double kEndFull = 0.75;  // of the intensities' upper quartile: as bright as before the end
 
 std::vector<ParameterInfo> contour_end_parameters() {
     return with_window({
@@ -134,24 +136,37 @@ class ContourEnd final : public FeatureFinder {
         const auto chosen = choose_end(sheets_, rule_, feature);
         if (!chosen) return feature;
         const bool at_last = chosen->at_last;
-        const EndFit::Result fit = fit_end(chosen->first, chosen->last, at_last);
-        if (!fit.ok) {
+        fit_end(chosen->first, chosen->last, at_last);
+        if (curves_.empty()) {
             feature.message = "the points before the end do not form a line";
             return feature;
         }
-        EndCurve curve = fit.curve;
-        const bool rounded = fit.rounded;
         const double apart = sheets_.noise().measured_apart;
         const double interpolated = std::max(1.0, kEndDependent * apart);
-        curve.sigma_mm *= std::sqrt(interpolated);
-        curve.alike = std::max(1.0, curve.alike / interpolated);
+        for (EndCurve& curve : curves_) {
+            curve.sigma_mm *= std::sqrt(interpolated);
+            curve.alike = std::max(1.0, curve.alike / interpolated);
+        }
+        const EndCurve& curve = curves_.front();
+        const double mixed_ahead = step_ahead(profile, chosen->mixed, curve.tangent(curve.along(point(0))));
+        // The mean over the curves, and how far they differ.
+        double v = 0, unseen = 0;
+        feature.point_mm.setZero();
+        for (const EndCurve& each : curves_) {
+            const Beyond beyond = beyond_last(each, mixed_ahead, apart);
+            feature.point_mm += each.weight * each.at(beyond.s);
+            v += each.weight * each.variance_at(beyond.s);
+            unseen += each.weight * beyond.unseen * beyond.unseen;
+        }
+        Eigen::Matrix2d differ = Eigen::Matrix2d::Zero();
+        for (const EndCurve& each : curves_) {
+            const Eigen::Vector2d d = each.at(beyond_last(each, mixed_ahead, apart).s) - feature.point_mm;
+            differ += each.weight * d * d.transpose();
+        }
+        const bool rounded = curve.curvature != 0;
+        const auto [s, step, pitch, measured, unseen_of_best] = beyond_last(curve, mixed_ahead, apart);
         const double last_s = curve.along(point(0));
-        const double pitch = pitch_at(curve, rounded ? curve.tangent(last_s) : curve.direction, rounded);
-        const double measured = apart * pitch;
-        const double step = step_beyond(profile, chosen->mixed, curve.tangent(last_s), pitch) + measured;
-        const double s = last_s + 0.5 * step;
         const Eigen::Vector2d tangent = curve.tangent(s), normal(-tangent.y(), tangent.x());
-        feature.point_mm = curve.at(s);
 
         // Noise in z moves the last point along a sloping contour as well, noise in x along every one.
         const Eigen::Vector2d chord = curve.chord;
@@ -164,16 +179,16 @@ class ContourEnd final : public FeatureFinder {
         // Continued to the end of the reach, the contour may bend on or go on straight.
         const double continued = std::max(reach - 0.5 * step, 0.5 * step);
         const double bend = 0.5 * curve.curvature * continued * continued;
-        const Eigen::Vector4d powers(1, s, s * s, s * s * s);
-        const double misfit = std::max(std::abs(curve.cubic_misfit.dot(powers)), end_misfit(curve));
+        const double misfit = std::max(std::abs(curve.cubic_misfit.dot(curve.powers(s))), end_misfit(curve));
         const double skew = drawn_off(curve, pitch, s);
-        const double across = curve.variance_at(s) + bend * bend + misfit * misfit + skew * skew +
+        const double across = v + bend * bend + misfit * misfit + skew * skew +
                               sheets_.noise().shared_rounding_mm2(curve.rms_mm) * normal.y() * normal.y();
-        const double grazing = rounded ? grazing_variance(curve, curve.tangent(last_s), pitch, apart) : 0;
+        const double grazing = rounded ? grazing_variance(curve, curve.tangent(last_s), pitch) : 0;
         const double along = (reach * reach - 2 * pitch * measured) / 12 +
                              (reach - step) * (reach - step) / 4 + noise * noise + grazing +
-                             drawn_along(pitch, tangent);
-        feature.covariance_mm2 = across * normal * normal.transpose() + along * tangent * tangent.transpose();
+                             kEndUnseenVariance * unseen + drawn_along(pitch, tangent);
+        feature.covariance_mm2 =
+            across * normal * normal.transpose() + along * tangent * tangent.transpose() + differ;
         feature.rms_mm = curve.rms_mm;
         feature.points_used = curve.used;
         feature.status = FeatureStatus::ok;
@@ -185,32 +200,45 @@ class ContourEnd final : public FeatureFinder {
 
     // Through the points within fit_length_ of the end; through fewer where those are other than a line or an arc (a hem and
     // the flat before it) and these say better where the last point is. An arc is not given up for a line.
-    EndFit::Result fit_end(int first, int last, bool at_last) const {
-        EndFit::Result best;
+    void fit_end(int first, int last, bool at_last) const {
         const double fewest = kEndFewestShort * sheets_.noise().apart();
         double best_length = fit_length_, least = 0, tried = fit_length_;
+        curves_.clear();
         for (const double share : kEndShares) {
             const double length = share * fit_length_;
             take_end(first, last, at_last, length);
             if (share < 1 && double(fit_x_.size()) < fewest) break;
             tried = length;
-            const EndFit::Result fit = fit_.fit(fit_x_, fit_z_, sheets_.noise());
-            if (!fit.ok) break;
-            const double s = fit.curve.along(point(0));
+            const std::span<const EndCurve> fit = fit_.fit(fit_x_, fit_z_, sheets_.noise());
+            if (fit.empty()) break;
+            const EndCurve& curve = fit.front();
+            const double s = curve.along(point(0));
             const double misfit =
-                std::max(std::abs(fit.curve.cubic_misfit.dot(Eigen::Vector4d(1, s, s * s, s * s * s))),
-                         end_misfit(fit.curve));
-            const double doubt = fit.curve.variance_at(s) + misfit * misfit;
-            if (!best.ok || (doubt < least && (fit.rounded || !best.rounded))) {
-                best = fit;
+                std::max(std::abs(curve.cubic_misfit.dot(curve.powers(s))), end_misfit(curve));
+            const double doubt = curve.variance_at(s) + misfit * misfit;
+            if (curves_.empty() ||
+                (doubt < least && (curve.curvature != 0 || curves_.front().curvature == 0))) {
+                curves_.assign(fit.begin(), fit.end());
                 best_length = length;
                 least = doubt;
             }
-            if (!(misfit * misfit > fit.curve.variance_at(s))) break;
+            if (!(misfit * misfit > curve.variance_at(s))) break;
         }
         if (best_length != tried || double(fit_x_.size()) < fewest)
             take_end(first, last, at_last, best_length);
-        return best;
+    }
+
+    // Where the curve ends, s: half a `step` beyond the last point, all along it; `measured` of the step for an interpolation
+    // that is seen; `unseen`, how much farther it may have gone for one that is not.
+    struct Beyond {
+        double s, step, pitch, measured, unseen;
+    };
+    Beyond beyond_last(const EndCurve& curve, double mixed_ahead, double apart) const {
+        const double last = curve.along(point(0));
+        const double pitch = pitch_at(curve, curve.tangent(last));
+        const double measured = apart * pitch, step = pitch + mixed_ahead + measured;
+        const double unseen = unseen_beyond(curve, curve.tangent(last), pitch, apart);
+        return {last + 0.5 * step, step, pitch, measured, unseen};
     }
 
     // The points within `length` of the end, from the end inwards.
@@ -228,7 +256,7 @@ class ContourEnd final : public FeatureFinder {
     }
 
     // Median of up to 16 steps, so a missing return does not count.
-    double pitch_at(const EndCurve& curve, const Eigen::Vector2d& tangent, bool rounded) const {
+    double pitch_at(const EndCurve& curve, const Eigen::Vector2d& tangent) const {
         const std::size_t most = std::min(fit_x_.size(), kEndSteps + 1);
         const auto median_step = [&](const Eigen::Vector2d& direction) {
             scratch_.clear();
@@ -237,7 +265,7 @@ class ContourEnd final : public FeatureFinder {
             return median(scratch_);
         };
         const double pitch = median_step(curve.direction);
-        if (!rounded) return pitch;
+        if (curve.curvature == 0) return pitch;
         return std::clamp(arc_over(median_step(Eigen::Vector2d::UnitX()), curve, tangent), pitch,
                           std::max(pitch, kEndLongestPitch * fit_length_));
     }
@@ -266,27 +294,29 @@ class ContourEnd final : public FeatureFinder {
     }
 
     // Where an arc turns away to a steep end: the angle at which there is too little light for a return scatters with the
-    // surface, and an even grid may have been laid over points that are nearly as far apart as its own.
-    double grazing_variance(const EndCurve& curve, const Eigen::Vector2d& tangent, double pitch,
-                            double apart) const {
+    // surface.
+    double grazing_variance(const EndCurve& curve, const Eigen::Vector2d& tangent, double pitch) const {
         const double turning = turning_away(curve, tangent);
         const double steep = std::acos(std::min(std::abs(tangent.x()), 1.0)) + turning * pitch;
         const double share =
             std::clamp((steep - kEndGrazed_rad) / (kEndGrazing_rad - kEndGrazed_rad), 0.0, 1.0);
         if (!(turning > 0) || !(share > 0)) return 0;
-        const double longest = kEndLongestPitch * fit_length_;
-        const double light = std::min(kEndLight_rad / turning, longest);
-        double grid = 0;
-        if (sideways_noise() < kEndEven * pitch && apart < kEndUnseenApart) {
-            scratch_.clear();
-            for (std::size_t i = 1; i < std::min(fit_x_.size(), kEndSteps + 1); ++i)
-                scratch_.push_back(std::abs(fit_x_[i] - fit_x_[i - 1]));
-            const double in_x = median(scratch_);
-            grid = std::min(arc_over((1 + kEndUnseenApart) * in_x, curve, tangent) -
-                                arc_over((1 + apart) * in_x, curve, tangent),
-                            longest);
-        }
-        return share * (light * light + grid * grid / 6);
+        const double light = std::min(kEndLight_rad / turning, kEndLongestPitch * fit_length_);
+        return share * light * light;
+    }
+
+    // How much farther the curve may have gone on: an even grid may have been laid over points that are nearly as far apart
+    // as its own, without the noise showing it.
+    double unseen_beyond(const EndCurve& curve, const Eigen::Vector2d& tangent, double pitch,
+                         double apart) const {
+        if (!(sideways_noise() < kEndEven * pitch) || !(apart < kEndUnseenApart)) return 0;
+        scratch_.clear();
+        for (std::size_t i = 1; i < std::min(fit_x_.size(), kEndSteps + 1); ++i)
+            scratch_.push_back(std::abs(fit_x_[i] - fit_x_[i - 1]));
+        const double in_x = median(scratch_);
+        return std::min(arc_over((1 + kEndUnseenApart) * in_x, curve, tangent) -
+                            arc_over((1 + apart) * in_x, curve, tangent),
+                        kEndLongestPitch * fit_length_);
     }
 
     // How far across the curve the point at s is drawn off by means of neighbours: those at the end are of points inwards
@@ -294,14 +324,13 @@ class ContourEnd final : public FeatureFinder {
     double drawn_off(const EndCurve& curve, double pitch, double s) const {
         const double half = 0.5 * (sheets_.noise().apart() - 1);  // points on either side that a mean is of
         if (!(half > kEndAlone)) return 0;
-        const Eigen::Vector3d weights = curve.cofactor * Eigen::Vector3d(1, s, s * s);
+        const Eigen::Vector3d weights = curve.cofactor * curve.powers(s).head<3>();
         const double drawn = 0.5 + 0.5 * mean_for_certain();
         double off = 0;
         for (std::size_t i = 0; double(i) < half && i < fit_x_.size(); ++i) {
             const double at = curve.along(point(i)), inwards = drawn * (half - double(i)) * pitch;
             const Eigen::Vector2d tangent = curve.tangent(at);
-            off +=
-                weights.dot(Eigen::Vector3d(1, at, at * at)) * inwards * std::abs(tangent.x() * tangent.y());
+            off += weights.dot(curve.powers(at).head<3>()) * inwards * std::abs(tangent.x() * tangent.y());
         }
         return std::hypot(off, curve.curvature * half * half * pitch * pitch / 6);
     }
@@ -317,14 +346,12 @@ class ContourEnd final : public FeatureFinder {
         return inwards * inwards;
     }
 
-    // Twice the way from the last point to the middle of what may hold the end: the pitch; where points stand in the
-    // step behind it, the end may be anywhere up to the farthest of them.
-    double step_beyond(const Profile& profile, int mixed, const Eigen::Vector2d& tangent,
-                       double pitch) const {
-        if (mixed < 0) return pitch;
+    // Where points stand in the step behind the end, it may be anywhere up to the farthest of them: how far that stands ahead.
+    double step_ahead(const Profile& profile, int mixed, const Eigen::Vector2d& tangent) const {
+        if (mixed < 0) return 0;
         const auto line = static_cast<std::size_t>(mixed);
         const double ahead = tangent.dot(Eigen::Vector2d(profile.x_mm[line], profile.z_mm[line]) - point(0));
-        return ahead > 0 && ahead < fit_length_ ? pitch + ahead : pitch;
+        return ahead > 0 && ahead < fit_length_ ? ahead : 0;
     }
 
     // How far the last points lie off the curve where their mean says that it is not by noise, else 0.
@@ -418,6 +445,7 @@ class ContourEnd final : public FeatureFinder {
     mutable ContourSheets sheets_;
     mutable std::vector<double> fit_x_, fit_z_, intensity_, scratch_;
     mutable EndFit fit_;
+    mutable std::vector<EndCurve> curves_;
 };
 
 Expected<std::unique_ptr<FeatureFinder>> make_contour_end(const FeatureRecipe& recipe) {

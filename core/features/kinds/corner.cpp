@@ -261,7 +261,7 @@ class Corner final : public FeatureFinder {
             take([&](std::size_t i) { return i >= split && i < end; }, right_x_, right_z_);
         }
         LineFit &a = left_, &b = right_;
-        workspace_.noise = points_.noise();
+        workspace_.noise = points_.noise(SharedOver::many);
         Eigen::Matrix2d normals;
         for (int round = 0; round < rounds; ++round) {
             if (left_x_.size() < kFewestPerLine || right_x_.size() < kFewestPerLine) {

@@ -91,7 +91,7 @@ class Extremum final : public FeatureFinder {
         if (!top.piece)
             return refused(FeatureStatus::no_points,
                            Text("no unbroken piece of {} points in the window", kFewestForApex));
-        noise_ = points_.noise();
+        noise_ = points_.noise(SharedOver::many);
         fit_length_ = given_ > 0 ? given_ : kShortestFit_mm;
         Parabola fit = parabola_at(t, h, sign, top);
         if (!(given_ > 0)) fit = longest(t, h, sign, top, fit);

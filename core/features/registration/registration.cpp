@@ -20,6 +20,7 @@ constexpr double kComplete = 27;
 constexpr double kHopeless = 0.2;
 // Residuals of the best place beyond this multiple of the noise are a shape that is a little another one.
 constexpr double kMisfit = 1.5;
+constexpr double kWideGate_mm = 1.5;
 constexpr int kMostRivals = 4;
 constexpr int kStarts = 10, kFinishedAtOnce = 3, kAlong = 4;
 
@@ -218,6 +219,12 @@ Registration ContourMatcher::match(const Profile& profile, const SearchWindow& w
     Impl::Finish f = m.finish(places[0].pose, std::max(2 * places[0].gate, m.smallest_gate()), 1, 30);
     Impl::Support s = m.support(f, sigma, 1);
     m.follow(f, s, sigma);
+    // From a narrow gate it may have come to rest on a part of the points: once more from a wide one.
+    if (f.sigma > kMisfit * m.noise_mm()) {
+        const Impl::Finish wide = m.finish(f.pose, std::max(start_gate, kWideGate_mm), 1, 40);
+        const Impl::Support there = m.support(wide, sigma, 1);
+        if (there.cost < s.cost) f = wide, s = there;
+    }
     result = m.conclude(f, s, sigma);
     if (result.status != RegistrationStatus::ok) return result;
     if (!m.within(window, f.pose)) {

@@ -104,7 +104,7 @@ void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin, c
         solid_x_.push_back(x[i]);
         solid_z_.push_back(z[i]);
     }
-    const ProfileNoise noise = profile_noise(solid_x_, solid_z_, scratch_);
+    const ProfileNoise noise = profile_noise(solid_x_, solid_z_, scratch_, SharedOver::many);
     sigma_mm = noise.point_mm;
     pitch.shared = noise.apart();
     if (pitch.alike() > 1) sigma_mm = std::max(sigma_mm, noise.alone_mm);

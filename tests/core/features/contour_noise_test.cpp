@@ -210,7 +210,7 @@ class SharedNoise : public testing::TestWithParam<int> {
     void expect_honest(int least_found, double least = 0.93) const {
         EXPECT_GT(found_, least_found);
         EXPECT_GE(within_, least * found_);
-        EXPECT_LE(within_, 0.99 * found_);
+        EXPECT_LE(within_, 0.996 * found_);
     }
     Random random_{17};
     int found_ = 0, within_ = 0;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <array>
 #include <cstdio>
 #include <functional>
 
@@ -114,6 +116,26 @@ Scene clear_lap(Dice& dice, const char* meant, int neighbours) {
     }
 }
 
+// Whether a hem of few points is a line or an arc, nobody knows: its end is as unsure as both make it.
+TEST(ContourScenes, RoundedEndsAreAsUnsureAsTheySay) {
+    for (const auto& [least, most, covered] : {std::array{0.9, 1.5, 0.85}, {1.5, 8.0, 0.86}}) {
+        Dice dice(12);
+        int found = 0, within = 0;
+        for (int i = 0; i < 1000; ++i) {
+            const Scene scene = rounded_rim(dice, least, most);
+            Profile profile = scene.profile(dice);
+            ASSERT_TRUE(filter_profile(profile, {}));
+            const Feature f = make_feature_finder(scene.recipe).value()->find(profile);
+            if (f.status != FeatureStatus::ok) continue;
+            const Eigen::Vector2d e = f.point_mm - scene.truth;
+            ++found;
+            within += e.dot(f.covariance_mm2.inverse() * e) < 5.991;
+        }
+        EXPECT_GE(found, 980);
+        EXPECT_GE(within, covered * found) << least << " to " << most;
+        EXPECT_LE(within, 0.98 * found) << least << " to " << most;
+    }
+}
 TEST(ContourScenes, SharedNoiseMakesNoOthers) {
     for (const Shared shared : {Shared{.smoothed = 3}, {.smoothed = 5}, {.speckle = 5}}) {
         const int neighbours = shared.smoothed;

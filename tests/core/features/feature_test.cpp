@@ -93,7 +93,7 @@ TEST(ContourEnd, EitherSideAndSegments) {
         const Feature f = finder("contour-end", {{"side", 1}, {"segment", choice}})->find(p);
         ASSERT_EQ(f.status, FeatureStatus::ok);
         EXPECT_NEAR(f.point_mm.x(), -10 + 0.05 * 199 + 0.025, 1e-9);
-        EXPECT_NEAR(std::sqrt(f.covariance_mm2(0, 0)), 0.05 / std::sqrt(12.0), 1e-6);
+        EXPECT_NEAR(std::sqrt(f.covariance_mm2(0, 0)), 0.05 * std::sqrt(1 / 12.0 + 0.81 / 36), 1e-6);
     }
     EXPECT_NEAR(finder("contour-end", {{"side", 1}, {"window_z_min_mm", 3}})->find(p).point_mm.x(), -0.025,
                 1e-9);

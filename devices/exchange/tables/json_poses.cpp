@@ -20,7 +20,7 @@ constexpr double kMostAngle_deg = 720;
 // Poses of one notation, each with its place among all.
 struct Alike {
     PoseForm form;
-    std::vector<PoseRow> rows;
+    std::vector<WrittenRow> rows;
     std::vector<std::size_t> places;
 };
 
@@ -45,7 +45,7 @@ class JsonPoses {
                 notation = {"kuka-abc", "", ""};
         }
         SEAM_OK(check_said(layout_, notation, at));
-        PoseRow row{at, {}};
+        WrittenRow row{at, {}};
         const auto& n = written.numbers;
         if (n.form == RotationForm::matrix) {
             if (n.position_in_last_row)
@@ -73,7 +73,7 @@ class JsonPoses {
             PoseForm& form = alike.form;
             SEAM_OK(settle_units(form, alike.rows, where));
             for (std::size_t i = 0; i < alike.rows.size(); ++i) {
-                const PoseRow& row = alike.rows[i];
+                const WrittenRow& row = alike.rows[i];
                 const Eigen::Vector3d angles(row.numbers[3], row.numbers[4], row.numbers[5]);
                 if (form.convention == "kuka-abc" &&
                     angles.cwiseAbs().maxCoeff() * form.rad > kMostAngle_deg * kPi / 180)
@@ -101,13 +101,13 @@ class JsonPoses {
     Expected<void> add_own(const nlohmann::json& json, const std::string& at) {
         SEAM_OK(check_said(layout_, {"kuka-abc", "mm", "deg"}, at));
         SEAM_TRY(const auto pose, parse_pose(json, at));
-        PoseRow row{at, {}};
+        WrittenRow row{at, {}};
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 4; ++c) row.numbers.push_back(pose.matrix()(r, c));
         put("of our own", {"matrix", 1, kPi / 180}, std::move(row));
         return {};
     }
-    void put(const std::string& group, const PoseForm& form, PoseRow row) {
+    void put(const std::string& group, const PoseForm& form, WrittenRow row) {
         Alike& alike = alike_[group];
         alike.form = form;
         alike.rows.push_back(std::move(row));

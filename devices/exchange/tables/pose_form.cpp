@@ -26,17 +26,17 @@ Expected<Eigen::Matrix3d> rotation(const PoseForm& form, const std::vector<doubl
 }
 
 // One pose in metres among others in millimetres: it stands next to the base, and a thousandfold where the others do.
-Expected<void> check_one_unit(const std::vector<PoseRow>& rows, bool matrix) {
+Expected<void> check_one_unit(const std::vector<WrittenRow>& rows, bool matrix) {
     constexpr double kNear = 10, kAlike = 3;
-    const auto reach = [&](const PoseRow& row) {
+    const auto reach = [&](const WrittenRow& row) {
         const auto& n = row.numbers;
         return matrix ? std::hypot(n[3], n[7], n[11]) : std::hypot(n[0], n[1], n[2]);
     };
     std::vector<double> reaches;
-    for (const PoseRow& row : rows) reaches.push_back(reach(row));
+    for (const WrittenRow& row : rows) reaches.push_back(reach(row));
     const auto middle = reaches.begin() + static_cast<std::ptrdiff_t>(reaches.size() / 2);
     std::nth_element(reaches.begin(), middle, reaches.end());
-    for (const PoseRow& row : rows) {
+    for (const WrittenRow& row : rows) {
         const double mm = reach(row), if_metres = 1000 * mm;
         if (mm<kNear&& * middle> kNearForMillimetres && if_metres > *middle / kAlike &&
             if_metres < *middle * kAlike)
@@ -91,7 +91,7 @@ Pose brought_to_flange(const Pose& pose, const PoseLayout& layout) {
            layout.flange_from_tool.value_or(Pose::Identity()).inverse();
 }
 
-Expected<Pose> pose_of(const PoseForm& form, const PoseRow& row) {
+Expected<Pose> pose_of(const PoseForm& form, const WrittenRow& row) {
     const auto& n = row.numbers;
     if (form.convention == "matrix") {
         Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
@@ -112,10 +112,10 @@ Expected<Pose> pose_of(const PoseForm& form, const PoseRow& row) {
     return make_pose(r, t);
 }
 
-Expected<void> settle_units(PoseForm& form, const std::vector<PoseRow>& rows, const std::string& where) {
+Expected<void> settle_units(PoseForm& form, const std::vector<WrittenRow>& rows, const std::string& where) {
     const bool matrix = form.convention == "matrix";
     double farthest = 0, widest = 0;
-    for (const PoseRow& row : rows) {
+    for (const WrittenRow& row : rows) {
         for (std::size_t i = 0; i < 3; ++i)
             farthest = std::max(farthest, std::abs(row.numbers[matrix ? 4 * i + 3 : i]));
         for (std::size_t i = 3; !matrix && i < 6; ++i) widest = std::max(widest, std::abs(row.numbers[i]));

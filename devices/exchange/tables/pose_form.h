@@ -9,7 +9,7 @@
 
 namespace seamwright {
 
-struct PoseRow {
+struct WrittenRow {
     std::string at;
     // 3 of the position, then those of the rotation; or 12 or 16 of a matrix.
     std::vector<double> numbers;
@@ -28,9 +28,9 @@ Expected<void> check_said(const PoseLayout& layout, const PoseNotation& notation
 // Error (input): rows of `width` numbers are no pose of that form, or several.
 Expected<void> check_width(PoseForm& form, std::size_t width, const std::string& where);
 // Units that nobody named: usual ones. Error (input): the numbers speak against them.
-Expected<void> settle_units(PoseForm& form, const std::vector<PoseRow>& rows, const std::string& where);
+Expected<void> settle_units(PoseForm& form, const std::vector<WrittenRow>& rows, const std::string& where);
 // Error (input): a rotation that is none, a position beyond 100 m.
-Expected<Pose> pose_of(const PoseForm& form, const PoseRow& row);
+Expected<Pose> pose_of(const PoseForm& form, const WrittenRow& row);
 // From the tool in the frame that the layout names to the flange in the robot's base.
 Pose brought_to_flange(const Pose& pose, const PoseLayout& layout);
 

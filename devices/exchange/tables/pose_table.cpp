@@ -128,7 +128,7 @@ Expected<PoseTable> table_of(std::string_view text, const std::string& where, co
 
     const char separator = separator_of(text);
     const bool decimal_comma = separator != ',' && text.find(',') != text.npos && text.find('.') == text.npos;
-    std::vector<PoseRow> rows;
+    std::vector<WrittenRow> rows;
     PoseTable table;
     std::optional<PoseHeader> header;
     std::size_t width = 0;
@@ -168,7 +168,7 @@ Expected<PoseTable> table_of(std::string_view text, const std::string& where, co
         if (width == 0) width = fields.size();
         if (fields.size() != width)
             return input_error(Text("has {} fields where the other lines have {}", fields.size(), width), at);
-        PoseRow row;
+        WrittenRow row;
         row.at = at;
         std::vector<std::size_t> order;
         if (header) {
@@ -200,7 +200,7 @@ Expected<PoseTable> table_of(std::string_view text, const std::string& where, co
     if (width == 4 && !header) {  // stacked 4x4
         if (rows.size() % 4 != 0)
             return input_error(Text("{} rows of four numbers are no 4x4 matrices", rows.size()), where);
-        std::vector<PoseRow> stacked;
+        std::vector<WrittenRow> stacked;
         for (std::size_t i = 0; i < rows.size(); ++i) {
             if (rows[i].numbers.size() != 4) return input_error("is no row of a 4x4 matrix", rows[i].at);
             if (i % 4 == 0) stacked.push_back({rows[i].at, {}});
@@ -211,7 +211,7 @@ Expected<PoseTable> table_of(std::string_view text, const std::string& where, co
     }
     SEAM_OK(check_width(form, rows.front().numbers.size(), rows.front().at));
     SEAM_OK(settle_units(form, rows, where));
-    for (const PoseRow& row : rows) {
+    for (const WrittenRow& row : rows) {
         SEAM_TRY(auto pose, pose_of(form, row));
         table.poses.push_back({pose, row.at});
     }

@@ -33,7 +33,7 @@ void add_pose_table_options(CLI::App* command, PoseTableArguments& a, CLI::Optio
                 "quat-xyzw, matrix (default: as their header says)")
             ->check(CLI::IsMember(list(kPoseConventions))),
         command->add_option("--pose-unit", a.unit, "What the positions are in")
-            ->check(CLI::IsMember(list(kLengthUnits))),
+            ->check(CLI::IsMember(list(kFileUnits))),
         command->add_option("--pose-angle", a.angle, "What the angles are in")
             ->check(CLI::IsMember({"deg", "rad"})),
         command

@@ -44,6 +44,8 @@ Expected<PoseHeader> read_header(const std::vector<std::string_view>& fields, Po
     std::vector<ColumnName> names;
     for (std::size_t c = 0; c < fields.size(); ++c) {
         names.push_back(column_name(fields[c]));
+        if (const std::string& n = names[c].name; n == "tx" || n == "ty" || n == "tz")
+            names[c].name = n.substr(1);
         columns.emplace(names[c].name, c);
     }
     static const std::pair<const char*, std::vector<const char*>> rotations[] = {
@@ -80,6 +82,10 @@ Expected<PoseHeader> read_header(const std::vector<std::string_view>& fields, Po
         angle_unit = names[found[0]].unit;
         header.numbers.insert(header.numbers.end(), found.begin(), found.end());
         const bool same = convention == std::string("fanuc-wpr") && form.convention == "rpy";
+        // The titles name each number of a quaternion, whatever their order: either word for it fits.
+        const bool named = convention == std::string("quat-wxyz") && wanted[0] == std::string("qw") &&
+                           form.convention == "quat-xyzw";
+        if (named) form.convention = convention;
         if (!form.convention.empty() && *convention && form.convention != convention && !same)
             return input_error(Text("the header names {}, --pose-convention {}", convention, form.convention),
                                at);
@@ -95,6 +101,10 @@ Expected<PoseHeader> read_header(const std::vector<std::string_view>& fields, Po
     if (header.numbers.size() == 3)
         return input_error("the header names no rotation that is known", at,
                            "name it a,b,c or w,p,r or roll,pitch,yaw or qw,qx,qy,qz or rx,ry,rz");
+    if (const ColumnName& x = names[header.numbers[0]]; form.mm == 0 && !x.unknown.empty())
+        return input_error(Text("the unit \"{}\" of the column \"{}\" is not known", csv::shown(x.unknown),
+                                csv::shown(fields[header.numbers[0]])),
+                           at, "say what the positions are in with --pose-unit");
     if (form.mm == 0) form.mm = mm_of_unit(length_unit).value_or(0);
     if (form.rad == 0) form.rad = angle_unit == "deg" ? kPi / 180 : angle_unit == "rad" ? 1 : 0;
     return header;
@@ -113,19 +123,63 @@ char separator_of(std::string_view text) {
     return ' ';
 }
 
+// Poses as a robot's own words print them, a line each, as rows of numbers in the same lines; empty: no such text.
+//     p[0.8, -0.1, 0.6, 2.2, 2.2, 0.04]        UR: metre, rotation vector
+//     {X 812.4,Y -103.9,Z 655,A 91.2,B -1.1,C 178.8}     KUKA
+std::string rows_of_frames(std::string_view text, PoseForm& form) {
+    std::string rows;
+    bool ur = false, kuka = false;
+    csv::Lines lines(text);
+    std::string_view line;
+    while (lines.next(line)) {
+        std::string row(csv::blanks_off(line));
+        const bool vector = row.starts_with("p[") && row.ends_with("]");
+        const bool frame = row.starts_with("{") && row.ends_with("}") && row.find(':') == row.npos;
+        if (!row.empty() && !vector && !frame) return {};
+        ur = ur || vector, kuka = kuka || frame;
+        std::string numbers;
+        const std::string_view inside =
+            row.empty() ? std::string_view{}
+                        : std::string_view(row).substr(vector ? 2 : 1, row.size() - (vector ? 3 : 2));
+        constexpr std::string_view kLetters = "XYZABC";
+        std::size_t place = 0;
+        for (std::string_view field : text_fields(inside, ',')) {
+            if (frame && place < kLetters.size()) {
+                if (field.empty() ||
+                    std::toupper(static_cast<unsigned char>(field.front())) != kLetters[place])
+                    return {};
+                field.remove_prefix(1);
+            }
+            if (frame && place >= kLetters.size()) break;  // S, T, E1..
+            numbers += (place++ ? "," : "") + std::string(csv::blanks_off(field));
+        }
+        rows += numbers + "\n";
+    }
+    if (ur == kuka) return {};
+    if (form.convention.empty()) form.convention = ur ? "ur-rotvec" : "kuka-abc";
+    if (ur && form.mm == 0) form.mm = 1000;
+    return rows;
+}
+
 // As the text has them.
 Expected<PoseTable> table_of(std::string_view text, const std::string& where, const PoseLayout& layout) {
     if (is_utf16(text)) return input_error("the text is UTF-16", where, "save it as UTF-8 or plain ASCII");
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    const std::string with_newlines = csv::old_line_ends(text) ? csv::new_line_ends(text) : std::string();
+    if (!with_newlines.empty()) text = with_newlines;
     SEAM_TRY(PoseForm form, pose_form(layout));
     const auto start = text.find_first_not_of(" \t\r\n");
     if (start == text.npos) return input_error("the file is empty", where);
-    if (text[start] == '{' || text.substr(start, 2) == "[{") return parse_json_poses(text, where, layout);
+    const bool frame_of_kuka = text[start] == '{' && text.substr(start + 1, 1).find_first_of("Xx") == 0;
+    if ((text[start] == '{' && !frame_of_kuka) || text.substr(start, 2) == "[{")
+        return parse_json_poses(text, where, layout);
     if (auto program = parse_program_poses(text, where)) {
         if (*program) SEAM_OK(check_said(layout, (*program)->says, where));
         return std::move(*program);
     }
 
+    const std::string bare_rows = rows_of_frames(text, form);
+    if (!bare_rows.empty()) text = bare_rows;
     const char separator = separator_of(text);
     const bool decimal_comma = separator != ',' && text.find(',') != text.npos && text.find('.') == text.npos;
     std::vector<WrittenRow> rows;

@@ -87,5 +87,22 @@ TEST(JsonPoses, FilesBesideFramesAreJudgedTogetherAndBroughtToTheFlange) {
     EXPECT_TRUE(read_frame_poses(called, {}));
 }
 
+TEST(JsonPoses, PosesAsRobotsPrintThem) {
+    const PoseLayout none;
+    for (const std::string text :
+         {"p[0.8, -0.05, 0.6, 0, 0, 1.5707963267948966]\n", "{X 800,Y -50,Z 600,A 90,B 0,C 0,S 2,T 35}\n",
+          "# stamp tx ty tz qx qy qz qw\n1710000000.1 0.8 -0.05 0.6 0 0 0.70710678118 0.70710678118\n",
+          "x,y,z,qx,qy,qz,qw\n800,-50,600,0,0,0.70710678118,0.70710678118\n"}) {
+        PoseLayout layout = none;
+        if (text.front() == '#') layout.unit = "m";
+        if (text.front() == 'x') layout.convention = "quat-xyzw";
+        const auto table = parse_pose_table(text, "poses.txt", layout);
+        ASSERT_TRUE(table) << table.error().sentence() << text;
+        EXPECT_TRUE(table->poses.front().pose.isApprox(kMeant, 1e-6)) << text;
+    }
+    const auto mixed = parse_pose_table("p[0.8,0,0.6,0,0,1]\n{X 800,Y -50,Z 600,A 90,B 0,C 0}\n", "p", none);
+    EXPECT_FALSE(mixed);
+}
+
 }  // namespace
 }  // namespace seamwright

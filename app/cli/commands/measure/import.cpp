@@ -268,8 +268,10 @@ void add_import(CommandLine& line) {
     command->add_flag("--look", a->look,
                       "Only say what is understood: first values, range, pitch, noise, suspected unit");
     command
-        ->add_option("--unit", a->layout.profile.unit, "What the profiles are in: mm, m, um or in (inches)")
-        ->check(CLI::IsMember(list(kLengthUnits)));
+        ->add_option(
+            "--unit", a->layout.profile.unit,
+            "What the profiles are in: mm, cm, m, um, nm, in (inches) or mil (thousandths of an inch)")
+        ->check(CLI::IsMember(list(kFileUnits)));
     command
         ->add_option("--columns-xz", a->layout.profile.columns,
                      "The columns of x and z, by name or by number from 1")

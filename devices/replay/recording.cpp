@@ -167,6 +167,28 @@ Expected<std::vector<RecordedFrame>> frames_of_csv(const fs::path& folder, const
     return frames;
 }
 
+// Profiles of two kinds: those of the second would be passed over. Text that is somebody's pose, and a table of the first kind's
+// stem, are no frames.
+Expected<void> one_kind(const fs::path& folder, const std::vector<RecordedFrame>& profiles) {
+    const auto extension_of = [](const RecordedFrame& f) { return lower(f.file.extension().string()); };
+    for (const std::string_view first : kProfileExtensions) {
+        std::set<std::string> stems;
+        for (const RecordedFrame& f : profiles)
+            if (extension_of(f) == first) stems.insert(f.spot_id);
+        if (stems.empty()) continue;
+        for (const RecordedFrame& f : profiles) {
+            const std::string extension = extension_of(f);
+            const bool pose = extension == ".txt" || extension == ".dat";
+            if (extension == first || pose || stems.contains(f.spot_id)) continue;
+            return input_error(
+                Text("holds {} frames beside {}", std::string(first.substr(1)), f.file.filename().string()),
+                folder.string(), "write all frames in one kind of file, or take the others away");
+        }
+        return {};
+    }
+    return {};
+}
+
 Expected<std::vector<RecordedFrame>> frames_of_folder(const fs::path& folder, const std::string& kind) {
     std::vector<RecordedFrame> profiles, images;
     std::error_code problem;
@@ -185,6 +207,7 @@ Expected<std::vector<RecordedFrame>> frames_of_folder(const fs::path& folder, co
         }
     }
     if (problem) return file_error(Text("cannot be listed ({})", system_text(problem)), folder.string());
+    SEAM_OK(one_kind(folder, profiles));
     // Of several kinds the first counts; text beside images is their poses.
     for (const std::string_view extension : kProfileExtensions) {
         const auto is = [&](const RecordedFrame& f) {
@@ -294,7 +317,11 @@ Expected<std::vector<RecordedFrame>> list_recording(const fs::path& source, cons
     std::error_code ignored;
     const bool one_file = fs::is_regular_file(source, ignored) && is_profile_file(source);
     if (!one_file && !fs::is_directory(source, ignored)) {
-        return file_error("is no folder", source.string(), "give the folder that holds the recorded frames");
+        if (!fs::exists(source, ignored))
+            return file_error("does not exist", source.string(),
+                              "give the folder that holds the recorded frames");
+        return file_error("is neither a folder nor a file of profiles", source.string(),
+                          "profiles are .csv, .tsv, .txt, .asc, .xyz, .dat, .npy, .ply or .pcd");
     }
     const fs::path folder = one_file ? source.parent_path() : source;
     const bool json = !one_file && fs::exists(folder / "spots.json", ignored),

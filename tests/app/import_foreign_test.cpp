@@ -35,5 +35,15 @@ TEST_F(Import, PlacesInMetresAreAskedFor) {
     expect_motion("door", 0.1);
 }
 
+TEST_F(Import, FramesOfAnotherKindAreNotPassedOver) {
+    record([](const auto& p) { return "X,Z\n" + rows_of(p, ","); }, ".csv");
+    poses("poses.csv", pose_rows("name,x,y,z,w,p,r\n", ",", true, xyz_wpr));
+    std::filesystem::rename(folder / "car/scan_8.csv", folder / "car/scan_8.xyz");
+    expect_refused(edge_job("a", {}), "holds csv frames beside scan_8.xyz");
+    expect_refused(edge_job("a", {}, "nowhere.csv"), "does not exist", 3);
+    write("scan.docx", "x");
+    expect_refused(edge_job("a", {}, "scan.docx"), "is neither a folder nor a file of profiles", 3);
+}
+
 }  // namespace
 }  // namespace seamwright

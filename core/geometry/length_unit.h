@@ -7,7 +7,9 @@
 namespace seamwright {
 
 inline constexpr const char* kLengthUnits[] = {"mm", "m", "um", "in"};
-// Millimetres of one unit. nullopt: none of them.
+// And those that files come in.
+inline constexpr const char* kFileUnits[] = {"mm", "cm", "m", "um", "nm", "in", "mil"};
+// Millimetres of one unit of either list. nullopt: none of them.
 std::optional<double> mm_of_unit(std::string_view unit);
 
 }  // namespace seamwright

@@ -146,6 +146,13 @@ std::vector<NoReturnCode> find_no_return_codes(const Profile& profile) {
     return codes;
 }
 
+bool is_type_limit(double value) {
+    const double v = std::abs(value);
+    if (v == 2147483647 || v == 2147483648 || v == 4294967295 || v == 4294967296) return true;
+    if (std::abs(v / std::numeric_limits<float>::max() - 1) < 1e-2) return true;
+    return v >= 1e10 && v < 1e39 && std::abs(v / std::pow(10, std::round(std::log10(v))) - 1) < 1e-9;
+}
+
 int erase_no_returns(Profile& profile, const std::vector<double>& values) {
     int erased = 0;
     for (std::size_t k = 0; k < profile.z_mm.size(); ++k)

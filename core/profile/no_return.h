@@ -27,6 +27,10 @@ inline constexpr std::size_t kMostNoReturnCodes = 4;
 // Allocates nothing where there is none, after the first profile of a size.
 std::vector<NoReturnCode> find_no_return_codes(const Profile& profile);
 
+// A limit of 32 bits or of a float, which no sensor's heights reach in any unit: -2147483648, 4294967295, 3.4e38, 1e10 and its powers
+// up to 1e38 of either sign.
+bool is_type_limit(double value);
+
 // Makes NaN of the heights that equal one of `values`. Returns how many.
 int erase_no_returns(Profile& profile, const std::vector<double>& values);
 

@@ -78,7 +78,7 @@ std::optional<fs::path> pose_beside(const fs::path& file) {
 
 Expected<RecordedFrame> manifest_frame(const fs::path& folder, const std::string& file,
                                        const std::string& spot_id, const std::string& pose_file,
-                                       const std::string& where) {
+                                       const std::string& where, const PoseLayout& layout) {
     RecordedFrame frame;
     SEAM_TRY(const auto path, inside(folder, file, json_path(where, "file")));
     frame.file = path;
@@ -91,13 +91,14 @@ Expected<RecordedFrame> manifest_frame(const fs::path& folder, const std::string
     frame.spot_id = spot_id;
     if (!pose_file.empty()) {
         SEAM_TRY(const auto pose_path, inside(folder, pose_file, json_path(where, "pose_file")));
-        SEAM_TRY(const auto pose, read_pose_file(pose_path));
-        frame.base_from_flange = pose;
+        SEAM_TRY(const auto poses, read_frame_poses({&pose_path, 1}, layout));
+        frame.base_from_flange = poses.front();
     }
     return frame;
 }
 
-Expected<std::vector<RecordedFrame>> frames_of_json(const fs::path& folder, const fs::path& manifest) {
+Expected<std::vector<RecordedFrame>> frames_of_json(const fs::path& folder, const fs::path& manifest,
+                                                    const PoseLayout& layout) {
     SEAM_TRY(const auto json, read_json_file(manifest));
     const std::string where = manifest.string();
     SEAM_OK(only_fields(json, {"frames"}, where));
@@ -110,7 +111,7 @@ Expected<std::vector<RecordedFrame>> frames_of_json(const fs::path& folder, cons
         SEAM_TRY(const auto file, json_string(entry, "file", at));
         SEAM_TRY(const auto spot, json_string(entry, "spot_id", at));
         SEAM_TRY(const auto pose_file, json_string_or(entry, "pose_file", "", at));
-        SEAM_TRY(auto frame, manifest_frame(folder, file, spot, pose_file, at));
+        SEAM_TRY(auto frame, manifest_frame(folder, file, spot, pose_file, at, layout));
         if (entry.contains("base_from_flange")) {
             if (!pose_file.empty())
                 return input_error("names two poses", at, "give base_from_flange or pose_file");
@@ -123,7 +124,8 @@ Expected<std::vector<RecordedFrame>> frames_of_json(const fs::path& folder, cons
     return frames;
 }
 
-Expected<std::vector<RecordedFrame>> frames_of_csv(const fs::path& folder, const fs::path& manifest) {
+Expected<std::vector<RecordedFrame>> frames_of_csv(const fs::path& folder, const fs::path& manifest,
+                                                   const PoseLayout& layout) {
     SEAM_TRY(const auto text, read_text_file(manifest));
     std::vector<RecordedFrame> frames;
     std::string_view rest = text;
@@ -158,10 +160,33 @@ Expected<std::vector<RecordedFrame>> frames_of_csv(const fs::path& folder, const
         if (fields.size() != width) {
             return input_error(Text("has {} fields where the header names {}", fields.size(), width), at);
         }
-        SEAM_TRY(auto frame, manifest_frame(folder, fields[0], fields[1], width == 3 ? fields[2] : "", at));
+        SEAM_TRY(auto frame,
+                 manifest_frame(folder, fields[0], fields[1], width == 3 ? fields[2] : "", at, layout));
         frames.push_back(std::move(frame));
     }
     return frames;
+}
+
+// Profiles of two kinds: those of the second would be passed over. Text that is somebody's pose, and a table of the first kind's
+// stem, are no frames.
+Expected<void> one_kind(const fs::path& folder, const std::vector<RecordedFrame>& profiles) {
+    const auto extension_of = [](const RecordedFrame& f) { return lower(f.file.extension().string()); };
+    for (const std::string_view first : kProfileExtensions) {
+        std::set<std::string> stems;
+        for (const RecordedFrame& f : profiles)
+            if (extension_of(f) == first) stems.insert(f.spot_id);
+        if (stems.empty()) continue;
+        for (const RecordedFrame& f : profiles) {
+            const std::string extension = extension_of(f);
+            const bool pose = extension == ".txt" || extension == ".dat";
+            if (extension == first || pose || stems.contains(f.spot_id)) continue;
+            return input_error(
+                Text("holds {} frames beside {}", std::string(first.substr(1)), f.file.filename().string()),
+                folder.string(), "write all frames in one kind of file, or take the others away");
+        }
+        return {};
+    }
+    return {};
 }
 
 Expected<std::vector<RecordedFrame>> frames_of_folder(const fs::path& folder, const std::string& kind) {
@@ -182,6 +207,7 @@ Expected<std::vector<RecordedFrame>> frames_of_folder(const fs::path& folder, co
         }
     }
     if (problem) return file_error(Text("cannot be listed ({})", system_text(problem)), folder.string());
+    SEAM_OK(one_kind(folder, profiles));
     // Of several kinds the first counts; text beside images is their poses.
     for (const std::string_view extension : kProfileExtensions) {
         const auto is = [&](const RecordedFrame& f) {
@@ -291,14 +317,18 @@ Expected<std::vector<RecordedFrame>> list_recording(const fs::path& source, cons
     std::error_code ignored;
     const bool one_file = fs::is_regular_file(source, ignored) && is_profile_file(source);
     if (!one_file && !fs::is_directory(source, ignored)) {
-        return file_error("is no folder", source.string(), "give the folder that holds the recorded frames");
+        if (!fs::exists(source, ignored))
+            return file_error("does not exist", source.string(),
+                              "give the folder that holds the recorded frames");
+        return file_error("is neither a folder nor a file of profiles", source.string(),
+                          "profiles are .csv, .tsv, .txt, .asc, .xyz, .dat, .npy, .ply or .pcd");
     }
     const fs::path folder = one_file ? source.parent_path() : source;
     const bool json = !one_file && fs::exists(folder / "spots.json", ignored),
                csv = !one_file && fs::exists(folder / "frames.csv", ignored);
     auto frames = one_file ? frames_of_file(source, layout, told)
-                  : json   ? frames_of_json(folder, folder / "spots.json")
-                  : csv    ? frames_of_csv(folder, folder / "frames.csv")
+                  : json   ? frames_of_json(folder, folder / "spots.json", layout.pose)
+                  : csv    ? frames_of_csv(folder, folder / "frames.csv", layout.pose)
                            : frames_of_folder(folder, kind);
     if (!frames) return frames;
     if (frames->empty()) {
@@ -310,19 +340,24 @@ Expected<std::vector<RecordedFrame>> list_recording(const fs::path& source, cons
     }
     std::size_t with_pose = 0;
     const RecordedFrame* missing = nullptr;
+    std::vector<fs::path> pose_files;
+    std::vector<RecordedFrame*> of_files;
     for (RecordedFrame& frame : *frames) {
-        if (!frame.base_from_flange && (!one_file || frames->size() == 1)) {
-            if (const auto path = pose_beside(frame.file)) {
-                SEAM_TRY(const auto pose, read_frame_pose(*path, layout.pose));
-                frame.base_from_flange = pose;
-            }
+        const auto path = !frame.base_from_flange && (!one_file || frames->size() == 1)
+                              ? pose_beside(frame.file)
+                              : std::nullopt;
+        if (path) {
+            pose_files.push_back(*path);
+            of_files.push_back(&frame);
         }
-        if (frame.base_from_flange) {
+        if (path || frame.base_from_flange) {
             ++with_pose;
         } else if (!missing) {
             missing = &frame;
         }
     }
+    SEAM_TRY(const auto poses, read_frame_poses(pose_files, layout.pose));
+    for (std::size_t i = 0; i < poses.size(); ++i) of_files[i]->base_from_flange = poses[i];
     if (missing && (with_pose > 0 || poses_required)) {
         return input_error("has no pose", missing->file.string(),
                            "put its pose beside it, e.g. pose0001.txt for frame0001.png");

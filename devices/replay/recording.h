@@ -7,7 +7,7 @@
 //   or every *.png *.bmp *.tif *.tiff *.pgm *.jpg (images), in natural order
 //                (frame2 before frame10). The spot id is the file's name without extension.
 // Where there are no CSVs, profiles are the files of the first of these kinds that is there: .tsv .npy .ply
-// .pcd .asc .xyz .dat .txt (profile_layout.h). A single file with several profiles stands for a folder: its
+// .pcd .asc .xyz .dat .txt (profile_layout.h); a folder of profiles of several kinds is an Error. A single file with several profiles stands for a folder: its
 // profiles are the frames, their spot ids the numbers that the file gives them ("3"), or its stem where there
 // is only one. A table of all poses (pose_table.h), named in the layout or called poses.{csv,txt,dat,mod,ls,json},
 // counts before pose files. Without a manifest, and where the manifest names no pose, the pose of

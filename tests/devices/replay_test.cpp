@@ -285,7 +285,7 @@ TEST(Replay, HostileFoldersAreRefused) {
         "accepted");
     DeviceSession session;
     EXPECT_THAT(open_sensor("replay", json{{"folder", "/nonexistent/x"}}, session).error().sentence(),
-                HasSubstr("no folder"));
+                HasSubstr("does not exist"));
     EXPECT_THAT(open_sensor("replay", json::object(), session).error().sentence(),
                 HasSubstr("settings.folder"));
     EXPECT_THAT(open_sensor("replay", json::array(), session).error().sentence(), HasSubstr("object"));

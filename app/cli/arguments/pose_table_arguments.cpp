@@ -10,11 +10,12 @@ namespace seamwright::cli {
 Expected<PoseLayout> PoseTableArguments::layout() const {
     PoseLayout layout{convention, unit, angle, {}, {}};
     if (!flange_from_tool.empty()) {
-        SEAM_TRY(const auto pose, read_pose_argument(flange_from_tool, "--flange-from-tool"));
+        SEAM_TRY(const auto pose, read_place_argument(flange_from_tool, "--flange-from-tool", kLeastTool_mm));
         layout.flange_from_tool = pose;
     }
     if (!base_from_user_frame.empty()) {
-        SEAM_TRY(const auto pose, read_pose_argument(base_from_user_frame, "--base-from-user-frame"));
+        SEAM_TRY(const auto pose,
+                 read_place_argument(base_from_user_frame, "--base-from-user-frame", kLeastPlace_mm));
         layout.base_from_user_frame = pose;
     }
     return layout;
@@ -32,7 +33,7 @@ void add_pose_table_options(CLI::App* command, PoseTableArguments& a, CLI::Optio
                 "quat-xyzw, matrix (default: as their header says)")
             ->check(CLI::IsMember(list(kPoseConventions))),
         command->add_option("--pose-unit", a.unit, "What the positions are in")
-            ->check(CLI::IsMember(list(kLengthUnits))),
+            ->check(CLI::IsMember(list(kFileUnits))),
         command->add_option("--pose-angle", a.angle, "What the angles are in")
             ->check(CLI::IsMember({"deg", "rad"})),
         command

@@ -46,6 +46,16 @@ inline std::string shown(std::string_view field) {
     return shown_text(field, 24);
 }
 
+// Lines that end as they did before 2001 on a Macintosh, in '\r' alone.
+inline bool old_line_ends(std::string_view text) {
+    return text.find('\n') == text.npos && text.find('\r') != text.npos;
+}
+inline std::string new_line_ends(std::string_view text) {
+    std::string turned(text);
+    std::replace(turned.begin(), turned.end(), '\r', '\n');
+    return turned;
+}
+
 // Lines of a text, '\n' or "\r\n", numbered from 1.
 class Lines {
   public:

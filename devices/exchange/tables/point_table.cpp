@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <optional>
 
 #include "devices/exchange/tables/csv_table.h"
 
@@ -17,94 +16,13 @@ namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-constexpr TextForm kTextForms[] = {{'\t', false}, {'\t', true}, {';', false}, {';', true},
-                                   {',', false},  {' ', false}, {' ', true}};
-constexpr std::size_t kLooksAt = 2000;  // lines, to see how a text is written
-
-bool is_comment(std::string_view line) {
-    return line.starts_with("#") || line.starts_with("%") || line.starts_with("//");
-}
-std::string_view without_comment_sign(std::string_view line) {
-    const auto from = line.find_first_not_of("#%/ \t");
-    return from == std::string_view::npos ? std::string_view{} : line.substr(from);
-}
-
-// At least two fields, all numbers or empty, one a number.
-bool numeric_row(std::string_view line, const TextForm& form, std::size_t& width) {
-    const auto fields = text_fields(line, form.separator);
-    width = fields.size();
-    if (width < 2 || width > 4096) return false;
-    bool any = false;
-    for (const auto& field : fields) {
-        double value = 0;
-        if (!text_number(field, form.decimal_comma, value)) return false;
-        any = any || !std::isnan(value);
-    }
-    return any;
-}
-
-struct Sniffed {
-    TextForm form;
-    std::size_t width = 0, rows = 0;
-};
-Sniffed sniff(std::string_view text) {
-    Sniffed best;
-    for (const TextForm& form : kTextForms) {
-        std::map<std::size_t, std::size_t> widths;
-        csv::Lines lines(text);
-        std::string_view line;
-        while (lines.number() < kLooksAt && lines.next(line)) {
-            std::size_t width = 0;
-            if (numeric_row(line, form, width)) ++widths[width];
-        }
-        for (const auto& [width, rows] : widths)
-            if (rows > best.rows) best = {form, width, rows};
-    }
-    return best;
-}
-
-// Names of the columns: a unit in brackets that stands off by a blank belongs to the name before it.
-std::vector<std::string> header_names(std::string_view line, char separator, std::size_t width) {
-    line = without_comment_sign(line);
-    const std::array<char, 5> signs{separator, ';', ',', '\t', ' '};
-    for (const char sign : signs) {
-        std::vector<std::string> names;
-        for (const auto& field : text_fields(line, sign)) {
-            const std::string name(csv::trimmed(field));
-            const bool unit = sign == ' ' && (name.starts_with("[") || name.starts_with("("));
-            if (unit && !names.empty())
-                names.back() += " " + name;
-            else
-                names.push_back(name);
-        }
-        while (names.size() > width && names.back().empty()) names.pop_back();
-        if (sign == separator && names.size() + 1 == width && names.size() > 1) names.emplace_back();
-        if (names.size() == width) return names;
-    }
-    return {};
-}
-
-bool are_units(const std::vector<std::string>& names) {
-    return !names.empty() && std::all_of(names.begin(), names.end(), [](std::string name) {
-        std::erase_if(name,
-                      [](char c) { return std::string_view("[]() ").find(c) != std::string_view::npos; });
-        return name.empty() || name == "mm" || name == "m" || name == "um" || name == "in" ||
-               name == "inch" || name == "-";
-    });
-}
-
-bool has_letters(const std::vector<std::string>& names) {
-    return std::any_of(names.begin(), names.end(), [](const std::string& s) {
-        return std::any_of(s.begin(), s.end(), [](unsigned char c) { return std::isalpha(c); });
-    });
-}
-
 }  // namespace
 
 const char* words(char separator) {
     return separator == '\t'  ? "tabs"
            : separator == ';' ? "semicolons"
            : separator == ',' ? "commas"
+           : separator == '|' ? "bars"
                               : "blanks";
 }
 
@@ -135,99 +53,85 @@ std::vector<std::string_view> text_fields(std::string_view line, char separator)
     return fields;
 }
 
+namespace {
+
+constexpr std::string_view kMinus = "\xE2\x88\x92";  // U+2212
+// Blanks that part thousands and no columns: no-break, narrow no-break, thin; and the Swiss apostrophes.
+constexpr std::string_view kGroupSigns[] = {"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89", "\xE2\x80\x99", "'",
+                                            " "};
+
+bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+// Three digits and no fourth from there on.
+bool group_of_three(std::string_view text, std::size_t at) {
+    for (std::size_t i = at; i < at + 3; ++i)
+        if (i >= text.size() || !is_digit(text[i])) return false;
+    return at + 3 >= text.size() || !is_digit(text[at + 3]);
+}
+
+bool all_of_sign(std::string_view field, char sign) {
+    return field.find_first_not_of(sign) == field.npos;
+}
+
+}  // namespace
+
+bool is_no_return(std::string_view field) {
+    field = csv::trimmed(field);
+    if (all_of_sign(field, '-') || all_of_sign(field, '*')) return true;  // nothing at all, too
+    std::string lower;
+    for (const char c : field) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    std::string_view word = lower;
+    if (word.starts_with("-") || word.starts_with("+")) word.remove_prefix(1);
+    if (word.starts_with("1.#")) return true;
+    for (const char* known : {"nan", "nan(ind)", "nan(snan)", "null", "none", "#n/a", "n/a", "na", "inf",
+                              "infinity", "#nv", "#num!", "#value!", "#div/0!"})
+        if (word == known) return true;
+    return false;
+}
+
 bool text_number(std::string_view field, bool decimal_comma, double& value) {
     field = csv::trimmed(field);
     value = kNoNumber;
-    if (field.empty() || field == "-" || field == "null" || field == "NULL") return true;
+    if (is_no_return(field)) return true;
     if (field.front() == '+') field.remove_prefix(1);
     if (field.empty() || field.size() > 64) return false;
+    const char decimal = decimal_comma ? ',' : '.', other = decimal_comma ? '.' : ',';
+    // The other sign parts thousands only where it says so itself: groups of three before a decimal sign.
+    const auto at_decimal = field.find(decimal);
+    const bool grouped = at_decimal != field.npos && field.rfind(other) < at_decimal;
     std::array<char, 64> copy;
-    std::copy(field.begin(), field.end(), copy.begin());
-    if (decimal_comma) {
-        if (field.find('.') != std::string_view::npos) return false;
-        std::replace(copy.begin(), copy.begin() + static_cast<std::ptrdiff_t>(field.size()), ',', '.');
+    std::size_t size = 0;
+    for (std::size_t i = 0; i < field.size();) {
+        const std::string_view rest = field.substr(i);
+        if (rest.starts_with(kMinus)) {
+            copy[size++] = '-';
+            i += kMinus.size();
+            continue;
+        }
+        const auto* sign = std::find_if(std::begin(kGroupSigns), std::end(kGroupSigns),
+                                        [&](std::string_view s) { return rest.starts_with(s); });
+        const std::size_t skip = sign != std::end(kGroupSigns) ? sign->size()
+                                 : grouped && rest[0] == other ? 1
+                                                               : 0;
+        if (skip > 0) {
+            const bool edge = size == 0 || i + skip == field.size();
+            const bool blank = skip > 0 && sign != std::end(kGroupSigns) && *sign != "'";
+            if (!(edge && blank) &&
+                !(size > 0 && is_digit(copy[size - 1]) && group_of_three(field, i + skip)))
+                return false;
+            i += skip;
+            continue;
+        }
+        if (rest[0] == other) return false;
+        const bool fortran = (rest[0] == 'D' || rest[0] == 'd') && size > 0 &&
+                             (is_digit(copy[size - 1]) || copy[size - 1] == '.');
+        copy[size++] = rest[0] == decimal ? '.' : fortran ? 'E' : rest[0];
+        ++i;
     }
-    const char* last = copy.data() + field.size();
+    const char* last = copy.data() + size;
     const auto [end, problem] = std::from_chars(copy.data(), last, value);
-    if (problem != std::errc() || end != last || std::isinf(value)) return false;
-    return true;
-}
-
-Expected<PointTable> parse_text_points(std::string_view text, const std::string& where, std::size_t limit) {
-    if (is_utf16(text)) return input_error("the text is UTF-16", where, "save it as UTF-8 or plain ASCII");
-    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
-        return input_error("the file is empty", where);
-    if (text.substr(0, 4096).find('\0') != std::string_view::npos)
-        return input_error("this is no text, and no known binary form", where, "give text, NPY, PLY or PCD");
-    const Sniffed seen = sniff(text);
-    if (seen.rows == 0)
-        return input_error("no line holds two or more numbers", Text("{}, line 1", where),
-                           "a profile is a table with a column x and a column z");
-    PointTable table;
-    csv::Lines lines(text);
-    std::string_view line, header_line, line_before;
-    std::size_t header_number = 0, before_number = 0;
-    bool between = false;
-    bool whole_numbers = true;
-    while (lines.next(line)) {
-        const bool blank = csv::blanks_off(line).empty();
-        std::size_t width = 0;
-        const bool numbers = !blank && numeric_row(line, seen.form, width);
-        if (table.lines.empty() && !(numbers && width == seen.width)) {
-            if (blank) continue;
-            line_before = header_line, before_number = header_number;
-            header_line = line, header_number = lines.number();
-            continue;
-        }
-        if (blank || is_comment(csv::blanks_off(line))) {
-            between = true;
-            continue;
-        }
-        const std::string at = fmt::format("{}, line {}", where, lines.number());
-        const auto fields = text_fields(line, seen.form.separator);
-        if (fields.size() != seen.width)
-            return input_error(
-                Text("has {} columns where the other lines have {}", fields.size(), seen.width), at);
-        if (table.lines.size() >= limit) return input_error(Text("there are more than {} points", limit), at);
-        table.columns.resize(seen.width);
-        for (std::size_t c = 0; c < seen.width; ++c) {
-            double value = 0;
-            if (!text_number(fields[c], seen.form.decimal_comma, value))
-                return input_error(Text("\"{}\" is no number", csv::shown(fields[c])), at);
-            whole_numbers = whole_numbers && (std::isnan(value) || value == std::floor(value));
-            table.columns[c].push_back(value);
-        }
-        if (table.lines.empty() || between) table.blocks.push_back(table.lines.size());
-        between = false;
-        table.lines.push_back(static_cast<std::uint32_t>(lines.number()));
-    }
-    if (header_number > 0) {
-        table.names = header_names(header_line, seen.form.separator, seen.width);
-        if (are_units(table.names) && before_number > 0) {  // units have a line of their own
-            auto names = header_names(line_before, seen.form.separator, seen.width);
-            for (std::size_t c = 0; c < names.size(); ++c)
-                if (!table.names[c].empty() && table.names[c] != "-") names[c] += " [" + table.names[c] + "]";
-            if (!names.empty()) table.names = names, header_number = before_number;
-        }
-        if (!has_letters(table.names)) table.names.clear();
-    }
-    // A separator at the end of every line is no further column.
-    const auto& last = table.columns.back();
-    if ((table.names.empty() || table.names.back().empty()) &&
-        std::all_of(last.begin(), last.end(), [](double v) { return std::isnan(v); })) {
-        table.columns.pop_back();
-        if (!table.names.empty()) table.names.pop_back();
-    }
-    if (seen.form.separator == ',' && whole_numbers && seen.width >= 3 && table.names.empty())
-        return input_error("the commas may stand between columns or be decimal commas", table.at(where, 0),
-                           "separate the columns by semicolons, or write decimal points");
-    table.understood = fmt::format("text separated by {}", words(seen.form.separator));
-    if (seen.form.decimal_comma) table.understood += ", decimal comma";
-    table.understood += table.names.empty()
-                            ? fmt::format(", no header, numbers from line {}", table.lines.front())
-                            : fmt::format(", header in line {}", header_number);
-    return table;
+    return size > 0 && problem == std::errc() && end == last && std::isfinite(value);
 }
 
 Expected<PointTable> parse_points(std::string_view bytes, const std::string& where, std::size_t limit) {

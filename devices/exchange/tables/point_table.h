@@ -27,9 +27,12 @@ struct PointTable {
     std::string at(const std::string& where, std::size_t row) const;
 };
 
+// Text: separated by tabs, semicolons, commas, bars or blanks; a preamble, a header and a line of units before the numbers. A
+// column that holds no number in any line is passed over (NaN). What stands before the first row and has a row's form is a row, so
+// that a broken number is named and not taken for a header.
 // By content: NumPy by its magic, PLY and PCD by their first words, else text. Error (input), naming file and
 // line: nothing numeric in it, a row of another width, a field that is no number, decimal commas that cannot
-// be told from the commas between columns, UTF-16, binary forms that are not read (big-endian, compressed),
+// be told from the commas between columns, points that may be decimal points or part thousands, UTF-16, binary forms that are not read (big-endian, compressed),
 // sizes that the file does not hold, more than `limit` points.
 Expected<PointTable> parse_points(std::string_view bytes, const std::string& where, std::size_t limit);
 
@@ -49,7 +52,10 @@ struct TextForm {
 };
 const char* words(char separator);  // "semicolons"
 std::vector<std::string_view> text_fields(std::string_view line, char separator);
-// False: no number. NaN: an empty field, "nan", "null", "-".
+// A word or a sign that stands for a number that is not there: nothing, "nan", "inf", "null", "N/A", "1.#QNAN", dashes, stars.
+bool is_no_return(std::string_view field);
+// False: no number. NaN: is_no_return(). U+2212 is a minus, D an exponent (Fortran); thousands may be parted by no-break blanks or
+// apostrophes, and by the other one of point and comma where a decimal sign follows.
 bool text_number(std::string_view field, bool decimal_comma, double& value);
 
 }  // namespace seamwright

@@ -9,33 +9,19 @@
 #include <optional>
 #include <set>
 
-#include "core/geometry/notation.h"
 #include "core/profile/units.h"
 #include "devices/exchange/files.h"
-#include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/exchange/shown_text.h"
 #include "devices/exchange/tables/csv_table.h"
+#include "devices/exchange/tables/json_poses.h"
 #include "devices/exchange/tables/point_table.h"
+#include "devices/exchange/tables/pose_form.h"
 #include "devices/exchange/tables/profile_layout.h"
 #include "devices/exchange/tables/program_poses.h"
 
 namespace seamwright {
 namespace {
-
-constexpr double kNearForMillimetres = 100;  // no robot measures with its flange within 100 mm of its base
-
-struct PoseRow {
-    std::string at;
-    std::vector<double> numbers;
-};
-
-// The numbers of a pose: 3 of the position, then those of the rotation; or 12 or 16 of a matrix.
-struct PoseForm {
-    std::string convention;
-    double mm = 0;   // of a unit of length; 0: not known
-    double rad = 0;  // of a unit of angle; 0: not known
-};
 
 // Titles that bind: numbers below them too are names, or the table is refused. Other columns show by their cells.
 bool says_that_it_names(const std::string& n) {
@@ -43,119 +29,6 @@ bool says_that_it_names(const std::string& n) {
                               "label", "image", "pose", "no", "nr", "index", "number"})
         if (n == known) return true;
     return false;
-}
-
-Expected<Eigen::Matrix3d> rotation(const PoseForm& form, const std::vector<double>& n,
-                                   const std::string& at) {
-    const double deg = form.rad * 180 / kPi;
-    if (form.convention == "kuka-abc") return rotation_from_kuka({n[3] * deg, n[4] * deg, n[5] * deg});
-    if (form.convention == "fanuc-wpr" || form.convention == "rpy")
-        return rotation_from_fanuc({n[3] * deg, n[4] * deg, n[5] * deg});
-    if (form.convention == "ur-rotvec") return rotation_exp(form.rad * Eigen::Vector3d(n[3], n[4], n[5]));
-    if (form.convention == "zyz") return rotation_from_zyz({n[3] * deg, n[4] * deg, n[5] * deg});
-    if (form.convention == "quat-wxyz") return rotation_from_abb({n[3], n[4], n[5], n[6]}, at);
-    return rotation_from_abb({n[6], n[3], n[4], n[5]}, at);
-}
-
-Expected<Pose> pose_of(const PoseForm& form, const PoseRow& row) {
-    const auto& n = row.numbers;
-    if (form.convention == "matrix") {
-        Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-        for (std::size_t i = 0; i < n.size(); ++i)
-            m(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = n[i];
-        if (n.size() == 16 && m.col(3).head<3>().isZero(1e-9) && !m.row(3).head<3>().isZero(1e-9))
-            return input_error("the position stands in the last row of the matrix", row.at,
-                               "write it transposed");
-        m.col(3).head<3>() *= form.mm;
-        if (m.col(3).head<3>().cwiseAbs().maxCoeff() > kFarthestPose_mm)
-            return input_error("the position exceeds 100 m", row.at, "say the unit with --pose-unit");
-        return pose_from_matrix(m, row.at);
-    }
-    const Eigen::Vector3d t = form.mm * Eigen::Vector3d(n[0], n[1], n[2]);
-    if (t.cwiseAbs().maxCoeff() > kFarthestPose_mm)
-        return input_error("the position exceeds 100 m", row.at, "say the unit with --pose-unit");
-    SEAM_TRY(auto r, rotation(form, n, row.at));
-    return make_pose(r, t);
-}
-
-// One pose in metres among others in millimetres: it stands next to the base, and a thousandfold where the others do.
-Expected<void> check_one_unit(const std::vector<PoseRow>& rows, bool matrix) {
-    constexpr double kNear = 10, kAlike = 3;
-    const auto reach = [&](const PoseRow& row) {
-        const auto& n = row.numbers;
-        return matrix ? std::hypot(n[3], n[7], n[11]) : std::hypot(n[0], n[1], n[2]);
-    };
-    std::vector<double> reaches;
-    for (const PoseRow& row : rows) reaches.push_back(reach(row));
-    const auto middle = reaches.begin() + static_cast<std::ptrdiff_t>(reaches.size() / 2);
-    std::nth_element(reaches.begin(), middle, reaches.end());
-    for (const PoseRow& row : rows) {
-        const double mm = reach(row), if_metres = 1000 * mm;
-        if (mm<kNear&& * middle> kNearForMillimetres && if_metres > *middle / kAlike &&
-            if_metres < *middle * kAlike)
-            return input_error(
-                Text("its position is {:.4g} from the base where the others are about {:.4g}: metres among "
-                     "millimetres",
-                     mm, *middle),
-                row.at, "write all positions in one unit, or say with --pose-unit mm that they are");
-    }
-    return {};
-}
-
-// Units that neither person nor header named: usual ones, unless the numbers speak against them.
-Expected<void> settle_units(PoseForm& form, const std::vector<PoseRow>& rows, const std::string& where) {
-    const bool matrix = form.convention == "matrix";
-    double farthest = 0, widest = 0;
-    for (const PoseRow& row : rows) {
-        for (std::size_t i = 0; i < 3; ++i)
-            farthest = std::max(farthest, std::abs(row.numbers[matrix ? 4 * i + 3 : i]));
-        for (std::size_t i = 3; !matrix && i < 6; ++i) widest = std::max(widest, std::abs(row.numbers[i]));
-    }
-    if (form.mm == 0) {
-        if (farthest > 0 && farthest < kNearForMillimetres)
-            return input_error(
-                Text("no position is farther than {:.4g}, which looks like metres or inches", farthest),
-                where, "say the unit with --pose-unit mm, m or in");
-        if (farthest > kFarthestPose_mm)
-            return input_error(Text("positions reach {:.4g}, which looks like micrometres", farthest), where,
-                               "say the unit with --pose-unit mm or um");
-        SEAM_OK(check_one_unit(rows, matrix));
-        form.mm = 1;
-    }
-    const bool angles = !matrix && !form.convention.starts_with("quat");
-    if (angles && form.rad == 0) {
-        const bool radian = form.convention == "ur-rotvec";
-        if (radian ? widest > 2 * kPi + 1e-6 : widest > 0 && widest <= 2 * kPi)
-            return input_error(
-                Text("no angle exceeds {:.4g}, which looks like {}", widest, radian ? "degrees" : "radian"),
-                where, "say the unit with --pose-angle deg or rad");
-        form.rad = radian ? 1 : kPi / 180;
-    }
-    return {};
-}
-
-Expected<void> check_width(PoseForm& form, std::size_t width, const std::string& where) {
-    if (form.convention.empty()) {
-        if (width == 12 || width == 16) {
-            form.convention = "matrix";
-        } else if (width == 6) {
-            return input_error("six numbers are a pose in several ways", where,
-                               "say which with --pose-convention kuka-abc, fanuc-wpr, rpy, ur-rotvec or zyz");
-        } else if (width == 7) {
-            return input_error("seven numbers are a frame's number and six, or a position and a quaternion",
-                               where,
-                               "say which with --pose-convention: one of the six, or quat-wxyz or quat-xyzw");
-        }
-    }
-    const bool fits = form.convention == "matrix"           ? width == 12 || width == 16
-                      : form.convention.starts_with("quat") ? width == 7
-                                                            : width == 6;
-    if (!fits)
-        return input_error(form.convention.empty()
-                               ? Text("{} numbers are no pose", width)
-                               : Text("{} numbers are no pose of the form {}", width, form.convention),
-                           where, "give x, y, z and a rotation, or a 4x4 matrix");
-    return {};
 }
 
 // What a header says: which columns are the numbers, in the order of the convention, and which may be names.
@@ -171,6 +44,8 @@ Expected<PoseHeader> read_header(const std::vector<std::string_view>& fields, Po
     std::vector<ColumnName> names;
     for (std::size_t c = 0; c < fields.size(); ++c) {
         names.push_back(column_name(fields[c]));
+        if (const std::string& n = names[c].name; n == "tx" || n == "ty" || n == "tz")
+            names[c].name = n.substr(1);
         columns.emplace(names[c].name, c);
     }
     static const std::pair<const char*, std::vector<const char*>> rotations[] = {
@@ -207,6 +82,10 @@ Expected<PoseHeader> read_header(const std::vector<std::string_view>& fields, Po
         angle_unit = names[found[0]].unit;
         header.numbers.insert(header.numbers.end(), found.begin(), found.end());
         const bool same = convention == std::string("fanuc-wpr") && form.convention == "rpy";
+        // The titles name each number of a quaternion, whatever their order: either word for it fits.
+        const bool named = convention == std::string("quat-wxyz") && wanted[0] == std::string("qw") &&
+                           form.convention == "quat-xyzw";
+        if (named) form.convention = convention;
         if (!form.convention.empty() && *convention && form.convention != convention && !same)
             return input_error(Text("the header names {}, --pose-convention {}", convention, form.convention),
                                at);
@@ -222,6 +101,10 @@ Expected<PoseHeader> read_header(const std::vector<std::string_view>& fields, Po
     if (header.numbers.size() == 3)
         return input_error("the header names no rotation that is known", at,
                            "name it a,b,c or w,p,r or roll,pitch,yaw or qw,qx,qy,qz or rx,ry,rz");
+    if (const ColumnName& x = names[header.numbers[0]]; form.mm == 0 && !x.unknown.empty())
+        return input_error(Text("the unit \"{}\" of the column \"{}\" is not known", csv::shown(x.unknown),
+                                csv::shown(fields[header.numbers[0]])),
+                           at, "say what the positions are in with --pose-unit");
     if (form.mm == 0) form.mm = mm_of_unit(length_unit).value_or(0);
     if (form.rad == 0) form.rad = angle_unit == "deg" ? kPi / 180 : angle_unit == "rad" ? 1 : 0;
     return header;
@@ -240,56 +123,66 @@ char separator_of(std::string_view text) {
     return ' ';
 }
 
-Expected<PoseTable> from_json(std::string_view text, const std::string& where) {
-    SEAM_TRY(const auto json, parse_json(text, where));
-    PoseTable table;
-    table.understood = fmt::format("{} JSON poses", json.size());
-    if (json.is_array()) {
-        for (std::size_t i = 0; i < json.size(); ++i) {
-            SEAM_TRY(auto pose, parse_pose(json[i], json_path(where, i)));
-            table.poses.push_back({pose, json_path(where, i)});
+// Poses as a robot's own words print them, a line each, as rows of numbers in the same lines; empty: no such text.
+//     p[0.8, -0.1, 0.6, 2.2, 2.2, 0.04]        UR: metre, rotation vector
+//     {X 812.4,Y -103.9,Z 655,A 91.2,B -1.1,C 178.8}     KUKA
+std::string rows_of_frames(std::string_view text, PoseForm& form) {
+    std::string rows;
+    bool ur = false, kuka = false;
+    csv::Lines lines(text);
+    std::string_view line;
+    while (lines.next(line)) {
+        std::string row(csv::blanks_off(line));
+        const bool vector = row.starts_with("p[") && row.ends_with("]");
+        const bool frame = row.starts_with("{") && row.ends_with("}") && row.find(':') == row.npos;
+        if (!row.empty() && !vector && !frame) return {};
+        ur = ur || vector, kuka = kuka || frame;
+        std::string numbers;
+        const std::string_view inside =
+            row.empty() ? std::string_view{}
+                        : std::string_view(row).substr(vector ? 2 : 1, row.size() - (vector ? 3 : 2));
+        constexpr std::string_view kLetters = "XYZABC";
+        std::size_t place = 0;
+        for (std::string_view field : text_fields(inside, ',')) {
+            if (frame && place < kLetters.size()) {
+                if (field.empty() ||
+                    std::toupper(static_cast<unsigned char>(field.front())) != kLetters[place])
+                    return {};
+                field.remove_prefix(1);
+            }
+            if (frame && place >= kLetters.size()) break;  // S, T, E1..
+            numbers += (place++ ? "," : "") + std::string(csv::blanks_off(field));
         }
-    } else if (json.is_object()) {
-        table.names.push_back({PoseNames::Says::names, "", {}});
-        for (const auto& [name, value] : json.items()) {
-            SEAM_TRY(auto pose, parse_pose(value, where + ": " + csv::shown(name)));
-            table.poses.push_back({pose, where + ": " + csv::shown(name)});
-            table.names.front().cells.push_back(name);
-        }
+        rows += numbers + "\n";
     }
-    if (table.poses.empty())
-        return input_error("there are no poses", where, "give {\"NAME\": POSE, ..} or [POSE, ..]");
-    return table;
+    if (ur == kuka) return {};
+    if (form.convention.empty()) form.convention = ur ? "ur-rotvec" : "kuka-abc";
+    if (ur && form.mm == 0) form.mm = 1000;
+    return rows;
 }
 
 // As the text has them.
 Expected<PoseTable> table_of(std::string_view text, const std::string& where, const PoseLayout& layout) {
     if (is_utf16(text)) return input_error("the text is UTF-16", where, "save it as UTF-8 or plain ASCII");
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-    PoseForm form{layout.convention, 0, 0};
-    if (!layout.convention.empty() && std::find(std::begin(kPoseConventions), std::end(kPoseConventions),
-                                                layout.convention) == std::end(kPoseConventions))
-        return usage_error(Text("\"{}\" is no convention of poses", csv::shown(layout.convention)),
-                           "--pose-convention");
-    if (!layout.unit.empty()) {
-        const auto mm = mm_of_unit(layout.unit);
-        if (!mm)
-            return usage_error(Text("\"{}\" is no unit of length", csv::shown(layout.unit)), "--pose-unit");
-        form.mm = *mm;
-    }
-    if (!layout.angle.empty()) {
-        if (layout.angle != "deg" && layout.angle != "rad")
-            return usage_error(Text("\"{}\" is no unit of angle", csv::shown(layout.angle)), "--pose-angle");
-        form.rad = layout.angle == "deg" ? kPi / 180 : 1;
-    }
+    const std::string with_newlines = csv::old_line_ends(text) ? csv::new_line_ends(text) : std::string();
+    if (!with_newlines.empty()) text = with_newlines;
+    SEAM_TRY(PoseForm form, pose_form(layout));
     const auto start = text.find_first_not_of(" \t\r\n");
     if (start == text.npos) return input_error("the file is empty", where);
-    if (text[start] == '{' || text.substr(start, 2) == "[{") return from_json(text, where);
-    if (auto program = parse_program_poses(text, where)) return std::move(*program);
+    const bool frame_of_kuka = text[start] == '{' && text.substr(start + 1, 1).find_first_of("Xx") == 0;
+    if ((text[start] == '{' && !frame_of_kuka) || text.substr(start, 2) == "[{")
+        return parse_json_poses(text, where, layout);
+    if (auto program = parse_program_poses(text, where)) {
+        if (*program) SEAM_OK(check_said(layout, (*program)->says, where));
+        return std::move(*program);
+    }
 
+    const std::string bare_rows = rows_of_frames(text, form);
+    if (!bare_rows.empty()) text = bare_rows;
     const char separator = separator_of(text);
     const bool decimal_comma = separator != ',' && text.find(',') != text.npos && text.find('.') == text.npos;
-    std::vector<PoseRow> rows;
+    std::vector<WrittenRow> rows;
     PoseTable table;
     std::optional<PoseHeader> header;
     std::size_t width = 0;
@@ -329,7 +222,7 @@ Expected<PoseTable> table_of(std::string_view text, const std::string& where, co
         if (width == 0) width = fields.size();
         if (fields.size() != width)
             return input_error(Text("has {} fields where the other lines have {}", fields.size(), width), at);
-        PoseRow row;
+        WrittenRow row;
         row.at = at;
         std::vector<std::size_t> order;
         if (header) {
@@ -361,7 +254,7 @@ Expected<PoseTable> table_of(std::string_view text, const std::string& where, co
     if (width == 4 && !header) {  // stacked 4x4
         if (rows.size() % 4 != 0)
             return input_error(Text("{} rows of four numbers are no 4x4 matrices", rows.size()), where);
-        std::vector<PoseRow> stacked;
+        std::vector<WrittenRow> stacked;
         for (std::size_t i = 0; i < rows.size(); ++i) {
             if (rows[i].numbers.size() != 4) return input_error("is no row of a 4x4 matrix", rows[i].at);
             if (i % 4 == 0) stacked.push_back({rows[i].at, {}});
@@ -372,7 +265,7 @@ Expected<PoseTable> table_of(std::string_view text, const std::string& where, co
     }
     SEAM_OK(check_width(form, rows.front().numbers.size(), rows.front().at));
     SEAM_OK(settle_units(form, rows, where));
-    for (const PoseRow& row : rows) {
+    for (const WrittenRow& row : rows) {
         SEAM_TRY(auto pose, pose_of(form, row));
         table.poses.push_back({pose, row.at});
     }
@@ -390,9 +283,7 @@ Expected<PoseTable> table_of(std::string_view text, const std::string& where, co
 
 // From the tool in the frame that the layout names to the flange in the robot's base.
 void bring_to_flange(PoseTable& table, const PoseLayout& layout) {
-    const Pose tool_from_flange = layout.flange_from_tool.value_or(Pose::Identity()).inverse();
-    const Pose base_from_user_frame = layout.base_from_user_frame.value_or(Pose::Identity());
-    for (TablePose& p : table.poses) p.pose = base_from_user_frame * p.pose * tool_from_flange;
+    for (TablePose& p : table.poses) p.pose = brought_to_flange(p.pose, layout);
     if (layout.flange_from_tool || layout.base_from_user_frame)
         table.understood +=
             fmt::format(", brought {}{}", layout.flange_from_tool ? "from the tool to the flange" : "",
@@ -407,10 +298,6 @@ void bring_to_flange(PoseTable& table, const PoseLayout& layout) {
 
 }  // namespace
 
-bool PoseLayout::says_nothing() const {
-    return convention.empty() && unit.empty() && angle.empty() && !flange_from_tool && !base_from_user_frame;
-}
-
 Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& where,
                                      const PoseLayout& layout) {
     SEAM_TRY(auto table, table_of(text, where, layout));
@@ -423,25 +310,52 @@ Expected<PoseTable> read_pose_table(const std::filesystem::path& path, const Pos
     return parse_pose_table(text, path.string(), layout);
 }
 
+namespace {
+
+constexpr std::size_t kMostOfAPoseFile = std::size_t{1} << 20;
+
+// Of a form that is no JSON.
 Expected<Pose> read_frame_pose(const std::filesystem::path& path, const PoseLayout& layout) {
-    const std::string extension = path.extension().string();
-    if (extension != ".txt") return read_pose_file(path);
-    SEAM_TRY(const auto text, read_text_file(path, std::size_t{1} << 20));
-    const auto numbers = [&] {
-        std::size_t count = 0, at = 0;
-        constexpr std::string_view separators = "()[], \t\r\n;";
-        while ((at = text.find_first_not_of(separators, at)) != std::string::npos) {
-            ++count;
-            at = std::min(text.find_first_of(separators, at), text.size());
-        }
-        return count;
-    }();
-    const bool usual = numbers != 6 && numbers != 12 && numbers != 16 && layout.says_nothing();
-    if (usual) return read_pose_file(path);
-    SEAM_TRY(auto table, parse_pose_table(text, path.string(), layout));
+    const std::string where = path.string();
+    const bool listed = path.extension() != ".txt";
+    SEAM_TRY(const auto text, read_text_file(path, kMostOfAPoseFile));
+    std::size_t numbers = 0, at = 0;
+    constexpr std::string_view separators = "()[], \t\r\n;";
+    while ((at = text.find_first_not_of(separators, at)) != std::string::npos) {
+        ++numbers;
+        at = std::min(text.find_first_of(separators, at), text.size());
+    }
+    const bool plain = layout.convention.empty() && layout.unit.empty() && layout.angle.empty();
+    if (listed || (plain && numbers != 6 && numbers != 12 && numbers != 16)) {
+        SEAM_OK(check_said(layout, {"quat-xyzw", "m", kNoAngles}, where));
+        SEAM_TRY(const auto pose, read_pose_file(path));
+        return brought_to_flange(pose, layout);
+    }
+    SEAM_TRY(auto table, parse_pose_table(text, where, layout));
     if (table.poses.size() != 1)
-        return input_error(Text("holds {} poses beside one frame", table.poses.size()), path.string());
+        return input_error(Text("holds {} poses beside one frame", table.poses.size()), where);
     return table.poses.front().pose;
+}
+
+}  // namespace
+
+Expected<std::vector<Pose>> read_frame_poses(std::span<const std::filesystem::path> files,
+                                             const PoseLayout& layout) {
+    std::vector<Pose> poses(files.size(), Pose::Identity());
+    std::vector<std::filesystem::path> json;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        if (files[i].extension() == ".json") {
+            json.push_back(files[i]);
+            places.push_back(i);
+            continue;
+        }
+        SEAM_TRY(poses[i], read_frame_pose(files[i], layout));
+    }
+    if (json.empty()) return poses;
+    SEAM_TRY(const auto read, read_json_poses(json, layout));
+    for (std::size_t i = 0; i < read.size(); ++i) poses[places[i]] = read[i];
+    return poses;
 }
 
 }  // namespace seamwright

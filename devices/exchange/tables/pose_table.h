@@ -3,6 +3,9 @@
 // program: program_poses.h), or a text file beside each frame. How three angles or four numbers make a rotation is named or asked, and so are
 // units that do not show.
 //
+// What the file's notation says itself (JSON by its keys, a robot program) the person may repeat and not change: an option that
+// could not act is refused by name.
+//
 // A table in text is a row a pose: [name] x y z and a rotation, by header or by order; or 4x4 (or 3x4)
 // matrices, row by row, one a row or stacked. A header names the convention where it is a brand's own: a, b,
 // c (KUKA); w, p, r (FANUC); roll, pitch, yaw; q1..q4, qw, qx, qy, qz; else `convention` says it:
@@ -37,7 +40,6 @@ struct PoseLayout {
     // Of what the poses are, where not of the flange, and in what, where not in the robot's base: pose P is the flange's
     // base_from_user_frame * P * flange_from_tool^-1.
     std::optional<Pose> flange_from_tool{}, base_from_user_frame{};
-    bool says_nothing() const;
 };
 
 struct TablePose {
@@ -53,10 +55,18 @@ struct PoseNames {
     std::string title;               // as the header writes it; empty: a form without titles
     std::vector<std::string> cells;  // one a pose; empty: nothing stands there
 };
+// What a file's own notation says, whatever the person does. Empty: nothing.
+inline constexpr const char* kNoAngles = "none";
+struct PoseNotation {
+    std::string convention;  // of kPoseConventions
+    std::string unit;        // of lengths
+    std::string angle;       // "deg" | "rad" | kNoAngles
+};
 struct PoseTable {
     std::vector<TablePose> poses;  // of the flange in the robot's base
     std::vector<PoseNames> names;
     std::string understood;
+    PoseNotation says;           // of a robot program
     bool of_own_frames = false;  // a program's, whose tool or frame is not zero, or not known
 };
 
@@ -67,8 +77,10 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
                                      const PoseLayout& layout);
 Expected<PoseTable> read_pose_table(const std::filesystem::path& path, const PoseLayout& layout);
 
-// The pose file of one frame: as read_pose_file() (pose_json.h) where its form says all by itself, else a
-// text with one pose as above.
-Expected<Pose> read_frame_pose(const std::filesystem::path& path, const PoseLayout& layout);
+// The pose files of frames, one each: JSON (json_poses.h), whose units are judged together; .txt and .yaml as
+// read_pose_file() (pose_json.h) where their form says all by itself; else a text with one pose as above. Of the flange in the
+// robot's base.
+Expected<std::vector<Pose>> read_frame_poses(std::span<const std::filesystem::path> files,
+                                             const PoseLayout& layout);
 
 }  // namespace seamwright

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 
+#include "core/profile/no_return.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/tables/csv_table.h"
 
@@ -19,12 +21,15 @@ struct PointColumns {
     std::size_t x, z, intensity, valid, segment;
 };
 
-Expected<void> append_point(const CsvTable& table, const PointColumns& c, Profile& profile) {
+Expected<void> append_point(const CsvTable& table, const PointColumns& c, Profile& profile,
+                            std::span<const double> no_returns = {}) {
     if (profile.size() >= kProfilePointLimit) {
         return input_error(Text("there are more than {} points", kProfilePointLimit), table.at());
     }
     SEAM_TRY(const auto x, table.millimetres(c.x, "x_mm"));
-    SEAM_TRY(const auto z, table.millimetres(c.z, "z_mm"));
+    SEAM_TRY(auto z, table.number(c.z, "z_mm"));
+    if (is_type_limit(z) || std::find(no_returns.begin(), no_returns.end(), z) != no_returns.end()) z = kNaN;
+    if (!std::isnan(z)) SEAM_OK(table.millimetres(c.z, "z_mm"));
     const bool returned = !std::isnan(x) && !std::isnan(z);
     profile.x_mm.push_back(x);
     profile.z_mm.push_back(returned ? z : kNaN);
@@ -65,7 +70,8 @@ void append_number(fmt::memory_buffer& out, double value) {
 
 }  // namespace
 
-Expected<Profile> parse_profile_csv(std::string_view text, const std::string& where) {
+Expected<Profile> parse_profile_csv(std::string_view text, const std::string& where,
+                                    std::span<const double> no_returns) {
     constexpr std::string_view wanted[] = {"x_mm", "z_mm", "intensity", "valid", "segment"};
     CsvTable table(text, where, "[,intensity]");
     SEAM_OK(table.header(wanted, 2));
@@ -73,7 +79,7 @@ Expected<Profile> parse_profile_csv(std::string_view text, const std::string& wh
     for (;;) {
         SEAM_TRY(const auto more, table.row());
         if (!more) break;
-        SEAM_OK(append_point(table, {0, 1, 2, 3, 4}, profile));
+        SEAM_OK(append_point(table, {0, 1, 2, 3, 4}, profile, no_returns));
     }
     if (profile.size() == 0) return input_error("the profile has no points", where);
     return profile;

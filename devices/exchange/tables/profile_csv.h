@@ -27,7 +27,9 @@ namespace seamwright {
 inline constexpr std::size_t kProfilePointLimit = 10'000'000;
 
 // `where` names the text in errors ("IN.csv"; the line is appended).
-Expected<Profile> parse_profile_csv(std::string_view text, const std::string& where);
+// Heights that stand for "no return", as the text writes them, are NaN: `no_returns`, and is_type_limit() (no_return.h).
+Expected<Profile> parse_profile_csv(std::string_view text, const std::string& where,
+                                    std::span<const double> no_returns = {});
 // With `intensity` when the profile has it, with `valid` and `segment` when it is filtered. Numbers are the
 // shortest text that reads back as the same double.
 std::string profile_csv(const Profile& profile);

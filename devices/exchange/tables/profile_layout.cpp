@@ -34,11 +34,34 @@ bool names_z(const std::string& n) {
                          "distance", "depth"});
 }
 bool names_profile(const std::string& n) {
-    return is_one_of(n, {"profile", "profileindex", "profileno", "profilenumber", "profileid", "profilenr",
-                         "scan", "scanindex", "frame", "frameindex", "frameno", "framenumber", "slice"});
+    return is_one_of(
+        n,
+        {"profile",  "profileindex", "profileno",    "profilenumber", "profileid",  "profilenr",  "profil",
+         "profilnr", "profilno",     "profilnummer", "profilindex",   "profilid",   "scan",       "scanindex",
+         "scanid",   "scanno",       "scannr",       "scannumber",    "frame",      "frameindex", "frameid",
+         "frameno",  "framenr",      "framenumber",  "slice",         "sliceindex", "sliceid",    "schnitt"});
 }
 bool names_counter(const std::string& n) {  // of profiles or of points
-    return is_one_of(n, {"index", "idx", "i", "no", "nr", "n", "number", "line"});
+    return is_one_of(n, {"index",
+                         "idx",
+                         "i",
+                         "no",
+                         "nr",
+                         "n",
+                         "number",
+                         "line",
+                         "encoder",
+                         "encoderposition",
+                         "encodervalue",
+                         "encodercount",
+                         "enc",
+                         "timestamp",
+                         "stamp",
+                         "zeitstempel",
+                         "time",
+                         "zeit",
+                         "travel",
+                         "travelmm"});
 }
 bool names_intensity(const std::string& n) {
     return is_one_of(n,
@@ -83,10 +106,15 @@ Expected<std::size_t> column_called(const PointTable& table, std::string_view wo
     if (text_number(word, false, number) && number >= 1 &&
         number <= static_cast<double>(table.columns.size()) && number == std::floor(number))
         return static_cast<std::size_t>(number) - 1;
-    for (std::size_t c = 0; c < table.names.size(); ++c)
-        if (table.names[c] == word) return c;
-    for (std::size_t c = 0; c < table.names.size(); ++c)
-        if (alike(table.names[c], word)) return c;
+    for (const bool exactly : {true, false}) {
+        std::vector<std::size_t> found;
+        for (std::size_t c = 0; c < table.names.size(); ++c)
+            if (exactly ? table.names[c] == word : alike(table.names[c], word)) found.push_back(c);
+        if (found.size() > 1)
+            return input_error(Text("the header names \"{}\" twice", csv::shown(word)), where,
+                               "say which with --columns-xz X,Z (numbers from 1)");
+        if (!found.empty()) return found.front();
+    }
     std::string there;
     for (const std::string& name : table.names)
         there += (there.empty() ? "" : ", ") + shown_text(name, kTitle);
@@ -101,10 +129,32 @@ std::string named_columns(const PointTable& table) {
     return text;
 }
 
+Expected<void> named_once(const PointTable& table, std::size_t column, const std::string& where) {
+    for (std::size_t c = 0; c < table.names.size(); ++c)
+        if (c != column && column_name(table.names[c]).name == column_name(table.names[column]).name)
+            return input_error(Text("the header names \"{}\" twice", csv::shown(table.names[column])), where,
+                               "say which with --columns-xz X,Z (numbers from 1)");
+    return {};
+}
+
+// Heights side by side: no names but numbers.
+bool one_profile_a_row(const PointTable& table) {
+    const auto numbers = std::count_if(table.names.begin(), table.names.end(), [](const std::string& name) {
+        double ignored = 0;
+        return text_number(name, false, ignored);
+    });
+    return table.names.empty() || 2 * static_cast<std::size_t>(numbers) > table.names.size();
+}
+
 Expected<PointRoles> find_columns(const PointTable& table, const ProfileLayout& layout,
                                   const std::string& where) {
     PointRoles found;
-    std::optional<std::size_t> counter;
+    std::optional<std::size_t> counter;  // one that numbers profiles
+    const std::size_t width = table.columns.size();
+    constexpr std::size_t kMostColumns = 16;
+    if (layout.columns.empty() && width > kMostColumns && one_profile_a_row(table))
+        return input_error("one profile per row is not read", table.at(where, 0),
+                           "write a row per point, with x and z");
     for (std::size_t c = 0; c < table.names.size(); ++c) {
         const std::string name = column_name(table.names[c]).name;
         const auto take = [&](std::optional<std::size_t>& role) {
@@ -114,11 +164,10 @@ Expected<PointRoles> find_columns(const PointTable& table, const ProfileLayout& 
         if (names_y(name)) take(found.y);
         if (names_z(name)) take(found.z);
         if (names_profile(name)) take(found.profile);
-        if (names_counter(name)) take(counter);
+        if (names_counter(name) && steps(table.columns[c]) && !constant(table.columns[c])) take(counter);
         if (names_intensity(name)) take(found.intensity);
     }
-    if (!found.profile && counter && steps(table.columns[*counter]) && !constant(table.columns[*counter]))
-        found.profile = counter;
+    if (!found.profile) found.profile = counter;
     if (!layout.columns.empty()) {
         const auto words = text_fields(layout.columns, ',');
         if (words.size() != 2)
@@ -126,6 +175,9 @@ Expected<PointRoles> find_columns(const PointTable& table, const ProfileLayout& 
                                "write X,Z by name or by number from 1");
         SEAM_TRY(auto x, column_called(table, words[0], where));
         SEAM_TRY(auto z, column_called(table, words[1], where));
+        if (x == z)
+            return usage_error("names one column for x and z", "--columns-xz",
+                               "write X,Z by name or by number from 1");
         found.x = x, found.z = z;
         if (found.y == found.x || found.y == found.z) found.y.reset();
         return found;
@@ -133,12 +185,13 @@ Expected<PointRoles> find_columns(const PointTable& table, const ProfileLayout& 
     if (!table.names.empty()) {
         if (found.x && !found.z && found.y)
             std::swap(found.y, found.z);  // drawn in the plane: y is the height
+        for (const auto& role : {found.x, found.z, found.profile})
+            if (role) SEAM_OK(named_once(table, *role, where));
         if (found.x && found.z) return found;
         return input_error(
             Text("the header \"{}\" names no column {}", named_columns(table), found.x ? "z" : "x"), where,
             "say which with --columns-xz X,Z (names, or numbers from 1)");
     }
-    const std::size_t width = table.columns.size();
     if (width == 2) {
         found.x = 0, found.z = 1;
     } else if (width == 3 && (constant(table.columns[1]) || steps(table.columns[1]))) {
@@ -169,14 +222,46 @@ bool is_own_form(std::string_view bytes) {
 }
 
 // Millimetres of one unit of a column: as the person says, else as its name says, else 1.
-double factor(const PointTable& table, std::size_t column, const ProfileLayout& layout, bool& asked) {
+Expected<double> factor(const PointTable& table, std::size_t column, const ProfileLayout& layout, bool& asked,
+                        const std::string& where) {
     if (const auto said = mm_of_unit(layout.unit)) return *said;
-    if (column < table.names.size())
-        if (const auto named = mm_of_unit(column_name(table.names[column]).unit)) {
-            asked = false;
-            return *named;
-        }
-    return 1;
+    if (column >= table.names.size()) return 1;
+    const ColumnName name = column_name(table.names[column]);
+    if (!name.unknown.empty())
+        return input_error(Text("the unit \"{}\" of the column \"{}\" is not known", csv::shown(name.unknown),
+                                csv::shown(table.names[column])),
+                           where, "say what the numbers are in with --unit");
+    const auto named = mm_of_unit(name.unit);
+    if (named) asked = false;
+    return named.value_or(1);
+}
+
+// The row where x starts over: it runs one way all through, but for leaps back over more than half of its span, and runs over more
+// than half of it each time.
+std::optional<std::size_t> starts_over(const std::vector<double>& x, std::size_t from, std::size_t to) {
+    std::vector<std::size_t> rows;
+    double low = INFINITY, high = -INFINITY;
+    for (std::size_t i = from; i < to; ++i) {
+        if (std::isnan(x[i])) continue;
+        rows.push_back(i);
+        low = std::min(low, x[i]), high = std::max(high, x[i]);
+    }
+    constexpr std::size_t kFewest = 10;
+    const double half = (high - low) / 2, jitter = (high - low) / 20;
+    if (rows.size() < kFewest || !(half > 0)) return std::nullopt;
+    std::size_t up = 0;
+    for (std::size_t k = 1; k < rows.size(); ++k) up += x[rows[k]] > x[rows[k - 1]] ? 1 : 0;
+    const double way = 2 * up > rows.size() ? 1 : -1;
+    std::optional<std::size_t> first;
+    double start = x[rows.front()];
+    for (std::size_t k = 1; k < rows.size(); ++k) {
+        const double before = x[rows[k - 1]], back = way * (before - x[rows[k]]);
+        if (back <= jitter) continue;
+        if (back <= half || way * (before - start) <= half) return std::nullopt;
+        if (!first) first = rows[k];
+        start = x[rows[k]];
+    }
+    return first && way * (x[rows.back()] - start) > half ? first : std::nullopt;
 }
 
 std::string told(const PointTable& table, const PointRoles& c) {
@@ -191,6 +276,21 @@ std::string told(const PointTable& table, const PointRoles& c) {
     return text;
 }
 
+// "px" of "x [px]" and "x_px", whose last bracket or stroke is at `from`. In round brackets a longer word or a number is a remark.
+std::string unknown_unit(std::string_view title, std::size_t from) {
+    if (from == title.npos || from == 0) return {};
+    constexpr std::size_t kLongest = 5;
+    std::string_view word = title.substr(from + 1);
+    if (title[from] == '_') return word == "px" || word == "pixel" ? std::string(word) : std::string();
+    const char end = title[from] == '[' ? ']' : ')';
+    const auto to = word.find(end);
+    if (to == word.npos || word.find_first_not_of(" ", to + 1) != word.npos) return {};
+    word = csv::blanks_off(word.substr(0, to));
+    const bool letters =
+        std::all_of(word.begin(), word.end(), [](unsigned char c) { return c < 0x80 && std::isalpha(c); });
+    return end == ']' || (letters && word.size() <= kLongest) ? std::string(word) : std::string();
+}
+
 }  // namespace
 
 ColumnName column_name(std::string_view header) {
@@ -200,13 +300,16 @@ ColumnName column_name(std::string_view header) {
     for (std::size_t at; (at = lower.find("\xC2\xB5")) != std::string::npos;)
         lower.replace(at, 2, "u");  // micro sign
     for (std::size_t at; (at = lower.find("\xCE\xBC")) != std::string::npos;)
-        lower.replace(at, 2, "u");  // mu
+        lower.replace(at, 2, "u");                     // mu
+    for (std::size_t at = 1; at < lower.size(); ++at)  // micro sign of Latin-1
+        if (lower[at] == '\xB5' && static_cast<unsigned char>(lower[at - 1]) < 0x80) lower[at] = 'u';
     for (std::size_t at; (at = lower.find("\xC2\xB0")) != std::string::npos;) lower.replace(at, 2, "deg");
     static const std::pair<const char*, const char*> units[] = {
         {"mm", "mm"},       {"millimeter", "mm"}, {"millimetre", "mm"}, {"um", "um"},   {"micron", "um"},
         {"microns", "um"},  {"micrometer", "um"}, {"m", "m"},           {"meter", "m"}, {"metre", "m"},
         {"in", "in"},       {"inch", "in"},       {"inches", "in"},     {"deg", "deg"}, {"degree", "deg"},
-        {"degrees", "deg"}, {"rad", "rad"},       {"radian", "rad"}};
+        {"degrees", "deg"}, {"rad", "rad"},       {"radian", "rad"},    {"cm", "cm"},   {"nm", "nm"},
+        {"mil", "mil"},     {"mils", "mil"},      {"thou", "mil"},      {"\"", "in"},   {"''", "in"}};
     const auto cut = lower.find_last_of("[(/_ ");
     if (cut != std::string::npos && cut > 0) {
         std::string unit = lower.substr(cut + 1);
@@ -218,6 +321,14 @@ ColumnName column_name(std::string_view header) {
                 if (lower.ends_with(" in")) lower.resize(lower.size() - 3);  // "Z in mm"
             }
     }
+    if (result.unit.empty()) {
+        const auto from = lower.find_last_of("[(_");
+        const std::string word = unknown_unit(lower, from);
+        if (!word.empty()) {
+            result.unknown = word;
+            lower.resize(from);
+        }
+    }
     for (const char c : lower)
         if (std::isalnum(static_cast<unsigned char>(c))) result.name += c;
     return result;
@@ -227,13 +338,12 @@ Expected<ReadProfiles> parse_profiles(std::string_view bytes, const std::string&
                                       const ProfileLayout& layout) {
     if (!layout.unit.empty() && !mm_of_unit(layout.unit))
         return usage_error(Text("\"{}\" is no unit of length", csv::shown(layout.unit)), "--unit",
-                           "give mm, m, um or in");
+                           "give mm, cm, m, um, nm, in or mil");
     ReadProfiles result;
     result.unit_asked = layout.unit.empty();
     // Our own form keeps its strict reader.
     if (layout.columns.empty() && is_own_form(bytes)) {
-        SEAM_TRY(auto profile, parse_profile_csv(bytes, where));
-        erase_no_returns(profile, layout.invalid);
+        SEAM_TRY(auto profile, parse_profile_csv(bytes, where, layout.invalid));
         if (std::none_of(profile.z_mm.begin(), profile.z_mm.end(),
                          [](double z) { return std::isfinite(z); }) &&
             !layout.invalid.empty())
@@ -248,14 +358,27 @@ Expected<ReadProfiles> parse_profiles(std::string_view bytes, const std::string&
     SEAM_TRY(auto found, find_columns(table, layout, where));
     const PointRoles& c = found;
     bool asked_x = result.unit_asked, asked_z = result.unit_asked;
-    const double x_mm = factor(table, *c.x, layout, asked_x), z_mm = factor(table, *c.z, layout, asked_z);
+    SEAM_TRY(const double x_mm, factor(table, *c.x, layout, asked_x, where));
+    SEAM_TRY(const double z_mm, factor(table, *c.z, layout, asked_z, where));
     result.unit_asked = asked_x || asked_z;
-    const double y_mm = c.y ? factor(table, *c.y, layout, asked_x) : 1;
+    double y_mm = 1;
     const bool flat = !c.y || (!table.in_base && constant(table.columns[*c.y]));
+    if (!flat) {
+        SEAM_TRY(y_mm, factor(table, *c.y, layout, asked_x, where));
+    }
     const bool by_y = !flat && !table.in_base && !c.profile && steps(table.columns[*c.y]);
     const auto key = c.profile ? c.profile : by_y ? c.y : std::nullopt;
     std::set<double> seen;
-    std::size_t block = 0, returns = 0;
+    std::size_t block = 0, returns = 0, limits = 0, begin = 0;
+    const bool in_plane = flat && !table.in_base;
+    const auto one_profile = [&](std::size_t end) -> Expected<void> {
+        const auto again = in_plane ? starts_over(table.columns[*c.x], begin, end) : std::nullopt;
+        begin = end;
+        if (!again) return {};
+        return input_error("x starts over: there are several profiles and nothing numbers them",
+                           table.at(where, *again),
+                           "number them in a column \"profile\", or part them by blank lines");
+    };
     for (std::size_t i = 0; i < table.rows(); ++i) {
         const bool new_block = block < table.blocks.size() && table.blocks[block] == i;
         if (new_block) ++block;
@@ -267,11 +390,14 @@ Expected<ReadProfiles> parse_profiles(std::string_view bytes, const std::string&
             if (!seen.insert(number).second)
                 return input_error(Text("profile {} comes back after another one", number),
                                    table.at(where, i), "keep the rows of a profile together");
+            SEAM_OK(one_profile(i));
             result.profiles.push_back({number, {}, {}});
         }
         ReadProfile& into = result.profiles.back();
         const double height = table.columns[*c.z][i];
-        const bool code = std::count(layout.invalid.begin(), layout.invalid.end(), height) > 0;
+        const bool limit = is_type_limit(height);
+        limits += limit ? 1 : 0;
+        const bool code = limit || std::count(layout.invalid.begin(), layout.invalid.end(), height) > 0;
         const double x = table.columns[*c.x][i] * x_mm,
                      z = code ? std::numeric_limits<double>::quiet_NaN() : height * z_mm;
         if (std::abs(x) > kFarthestPoint_mm || std::abs(z) > kFarthestPoint_mm)
@@ -287,8 +413,10 @@ Expected<ReadProfiles> parse_profiles(std::string_view bytes, const std::string&
         }
         if (!flat && !by_y && !c.profile) into.y_mm.push_back(table.columns[*c.y][i] * y_mm);
     }
+    SEAM_OK(one_profile(table.rows()));
     if (returns == 0) return input_error("no point has both x and z", where);
     result.understood = table.understood + ": " + told(table, c);
+    if (limits > 0) result.understood += fmt::format(", {} heights at a limit taken for no return", limits);
     if (by_y) result.understood += ", one profile for every y";
     if (result.profiles.size() > 1) result.understood += fmt::format(", {} profiles", result.profiles.size());
     return result;

@@ -3,10 +3,10 @@
 // understood is said in one sentence. What cannot be known from the file is asked for, never assumed.
 //
 // Columns. By name: x ("X", "x [mm]", "Position"), z ("Z", "Height", "Range"; y where there is no z), the
-// number of the profile ("profile_index", "Profile", "Frame"; "Index" where it holds still over several
-// points), intensity. Without names: two columns are x and z; three are x, y and z where y holds still, or
+// number of the profile ("profile_index", "Profil-Nr.", "frame_id"; "Index", "Encoder" or "Timestamp" where it holds still over several
+// points), intensity. Two columns of one title are asked for. Without names: two columns are x and z; three are x, y and z where y holds still, or
 // index, x and z. Several profiles in one file: by that number, by blocks between blank or comment lines, or
-// by a y that holds still over several points. A header `x_mm,z_mm` is our own form and read by
+// by a y that holds still over several points. Rows where x starts over and nothing numbers the profiles are refused. A header `x_mm,z_mm` is our own form and read by
 // profile_csv.h.
 
 #include <filesystem>
@@ -42,16 +42,18 @@ struct ReadProfiles {
 
 // `where` names the file in errors. Error (input), with the line where there is one: what parse_points()
 // refuses; columns that cannot be told or are not there; coordinates beyond 1 km; a profile that comes back
-// after another one; no point with a return at all; an unknown unit.
+// after another one; no point with a return at all; an unknown unit, also of a header where the person says none. Heights at a limit of
+// 32 bits or of a float are no return (is_type_limit).
 Expected<ReadProfiles> parse_profiles(std::string_view bytes, const std::string& where,
                                       const ProfileLayout& layout);
 Expected<ReadProfiles> read_profiles(const std::filesystem::path& path, const ProfileLayout& layout);
 
 // A name as it stands in a header: "X [um]" -> {"x", "um"}; "z_mm" -> {"z", "mm"}. `unit` is empty where none
-// is named; angles have "deg" and "rad".
+// is named; angles have "deg" and "rad". What stands in brackets and is no unit that is known ("X [px]") is `unknown`.
 struct ColumnName {
     std::string name;  // lower case, letters and digits only
     std::string unit;
+    std::string unknown;
 };
 ColumnName column_name(std::string_view header);
 

@@ -30,6 +30,11 @@ Expected<Pose> placed(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& mm
 }
 
 void understand(PoseTable& table, std::string_view brand, const std::string& frames) {
+    const bool abb = brand == "ABB";
+    table.says = {abb                ? "quat-wxyz"
+                  : brand == "FANUC" ? "fanuc-wpr"
+                                     : "kuka-abc",
+                  "mm", abb ? kNoAngles : "deg"};
     table.understood =
         fmt::format("{} {} positions{}{}", table.poses.size(), brand, frames.empty() ? "" : " in ", frames);
     table.of_own_frames = frames.empty() || frames.find_first_of("123456789?") != frames.npos;

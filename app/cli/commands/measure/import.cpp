@@ -92,9 +92,11 @@ Expected<FolderImport> folder_import(const ImportArguments& a) {
         options.piece_x_mm = {a.piece[0], a.piece[1]};
     }
     if (!a.landmark.empty()) options.template_reference_mm = {a.landmark[0], a.landmark[1]};
-    SEAM_TRY(auto flange, read_pose_argument(a.flange_from_sensor, "--flange-from-sensor"));
+    SEAM_TRY(auto flange, read_place_argument(a.flange_from_sensor, "--flange-from-sensor", kLeastPlace_mm,
+                                              "flange_from_sensor"));
     options.flange_from_sensor = flange;
-    SEAM_TRY(auto base, read_pose_argument(a.base_from_workobject, "--base-from-workobject"));
+    SEAM_TRY(auto base,
+             read_place_argument(a.base_from_workobject, "--base-from-workobject", kLeastPlace_mm));
     options.base_from_workobject = base;
     options.sigma_mm = a.sigma_mm;
     options.sigma_limit_mm = a.sigma_limit_mm;
@@ -122,7 +124,8 @@ Expected<Answer> look(const ImportArguments& a) {
     SEAM_TRY(layout.pose, a.poses.layout());
     if (!layout.poses.empty()) layout.poses = fs::absolute(layout.poses).string();
     if (a.channel != "automatic") layout.channel = *image_channel(a.channel);
-    SEAM_TRY(auto flange, read_pose_argument(a.flange_from_sensor, "--flange-from-sensor"));
+    SEAM_TRY(auto flange, read_place_argument(a.flange_from_sensor, "--flange-from-sensor", kLeastPlace_mm,
+                                              "flange_from_sensor"));
     layout.flange_from_sensor = flange;
     SEAM_TRY(auto seen, look_at_recording(a.source, layout));
     Answer answer;
@@ -265,8 +268,10 @@ void add_import(CommandLine& line) {
     command->add_flag("--look", a->look,
                       "Only say what is understood: first values, range, pitch, noise, suspected unit");
     command
-        ->add_option("--unit", a->layout.profile.unit, "What the profiles are in: mm, m, um or in (inches)")
-        ->check(CLI::IsMember(list(kLengthUnits)));
+        ->add_option(
+            "--unit", a->layout.profile.unit,
+            "What the profiles are in: mm, cm, m, um, nm, in (inches) or mil (thousandths of an inch)")
+        ->check(CLI::IsMember(list(kFileUnits)));
     command
         ->add_option("--columns-xz", a->layout.profile.columns,
                      "The columns of x and z, by name or by number from 1")
@@ -300,8 +305,9 @@ void add_import(CommandLine& line) {
         ->expected(2)
         ->type_name("X,Z");
     command
-        ->add_option("--flange-from-sensor", a->flange_from_sensor,
-                     "Sensor on the flange: POSE or a file holding one")
+        ->add_option(
+            "--flange-from-sensor", a->flange_from_sensor,
+            "Sensor on the flange: POSE, or a file that holds one or the answer of `calibrate --json`")
         ->type_name("POSE");
     command->add_option("--base-from-workobject", a->base_from_workobject, "Work object in the robot's base")
         ->type_name("POSE");

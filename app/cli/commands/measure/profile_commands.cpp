@@ -45,7 +45,7 @@ void add_unit(CLI::App* command, std::string& unit) {
     command
         ->add_option("--unit", unit,
                      "What lengths in the profiles are in: mm (as the header says), m, um or in (inches)")
-        ->check(CLI::IsMember(std::vector<std::string>(std::begin(kLengthUnits), std::end(kLengthUnits))));
+        ->check(CLI::IsMember(std::vector<std::string>(std::begin(kFileUnits), std::end(kFileUnits))));
 }
 
 // A pass by the middle one of its profiles: one that lost its stripe looks like anything.

@@ -212,6 +212,13 @@ CalibrationMethod drift_method() {
         R"({"flange_from_sensor":POSE,"centre_base_mm":[x,y,z],"radius_mm":R,"other_sigma_mm"?,"robot":{"sigma_mm","sigma_deg"?}?,
    "limits":{"translation_mm","rotation_deg"}?,"covariance":as in tcp-sphere's result?,"observations":[{"id"?,"base_from_flange":POSE,"profile":[[x,z],..]},..]}
   or {"measurements":[{"id"?,"base_from_flange":POSE,"measured_flange":[x,y,z],"known_base":[x,y,z],"sigma_mm"?},..]})";
+    m.fields = {{"",
+                 {"flange_from_sensor", "centre_base_mm", "radius_mm", "observations", "measurements",
+                  "other_sigma_mm", "limits", "covariance", "robot"}},
+                {"observations[]", {"id", "base_from_flange", "profile", "centre_base_mm", "radius_mm"}},
+                {"measurements[]", {"id", "base_from_flange", "measured_flange", "known_base", "sigma_mm"}},
+                {"limits", {"translation_mm", "rotation_deg"}},
+                robot_fields()};
     m.example = drift_example;
     m.poses = {{"observations", kRobotPose}, {"measurements", kRobotPose}};
     m.solve = solve_drift;

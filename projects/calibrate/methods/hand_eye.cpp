@@ -138,6 +138,9 @@ CalibrationMethod hand_eye_method() {
     m.layout =
         R"({"mount":"eye_in_hand"|"eye_to_hand","pairs":[{"id"?,"base_from_flange":POSE,"camera_from_target":POSE},..],
    "robot":{"sigma_mm","sigma_deg"?}?})";
+    m.fields = {{"", {"mount", "pairs", "robot"}, {"board"}},
+                {"pairs[]", {"id", "base_from_flange", "camera_from_target"}, {"size", "outline"}},
+                robot_fields()};
     m.example = hand_eye_example;
     m.poses = {{"pairs", kRobotPose}, {"pairs", "camera_from_target"}};
     m.solve = solve_hand_eye;

@@ -22,6 +22,7 @@ Expected<CalibrationSolution> solve_calibration(const CalibrationMethod& method,
                                                 const ExcludedIds& exclude) {
     if (!data.is_object())
         return input_error("the data is not a JSON object", "", Text("see calibrate {} --help", method.id));
+    SEAM_OK(check_fields(method, data));
     SEAM_TRY(const auto meant, with_usual_poses(method.poses, data));
     auto solution = method.solve(meant.data(), exclude);
     if (!solution) return solution;

@@ -277,6 +277,9 @@ CalibrationMethod nozzle_method() {
      "radius_sigma_mm"? (absent: 0.5 % of the radius),"covariance_mm2":3x3 or "sigma_mm"?},"touches":[{"id"?,"base_from_flange":POSE},..],
    "sigma_mm"? (of a touch; absent: from the scatter),"tip_radius_mm"?,"programmed":POSE? (flange_from_tool),
    "robot":{"sigma_mm","sigma_deg"?}?}   mm, robot's base; |base_from_flange tip - place| = radius + tip_radius)";
+    m.fields = {{"", {"target", "touches", "sigma_mm", "tip_radius_mm", "programmed", "robot"}},
+                {"touches[]", {"id", "base_from_flange"}},
+                robot_fields()};
     m.example = nozzle_example;
     m.poses = {{"touches", kRobotPose}};
     m.solve = solve_nozzle;

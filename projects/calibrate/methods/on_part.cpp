@@ -259,6 +259,11 @@ CalibrationMethod on_part_method() {
      "covariance":[[xx,xz],[xz,zz]]?},..]},..],"latency":"free" or seconds?,
    "prior":{"flange_from_sensor":POSE,"covariance":6x6 (mm, rad)}?,"robot":{"sigma_mm","sigma_deg"}?}
   p_k = F(t_k - latency) flange_from_sensor (x,0,z) lies on the edge; latency above zero: the profile is older than its stamp)";
+    m.fields = {{"", {"passes", "latency", "prior", "robot"}},
+                {"passes[]", {"id", "edge", "profiles"}},
+                {"passes[].profiles[]", {"time_s", "base_from_flange", "point", "covariance"}},
+                {"prior", {"flange_from_sensor", "covariance"}},
+                robot_fields()};
     m.example = on_part_example;
     m.solve = solve_on_part;
     m.entries = "passes";

@@ -219,6 +219,10 @@ CalibrationMethod plate_method() {
     m.usage = "points.json";
     m.layout = R"({"points":[{"id"?,"plate":[x,y,z],"world":[x,y,z]},..],"sigma_mm"?,
    "robot":{"sigma_mm","sigma_deg"?}?}   mm)";
+    m.fields = {{"", {"points", "sigma_mm", "robot"}, {"board"}},
+                {"points[]", {"id", "plate", "world", "points", "base_from_flange"}, {"size", "outline"}},
+                {"points[].points[]", {"id", "plate", "world"}},
+                robot_fields()};
     m.example = plate_example;
     m.solve = solve_plate;
     m.entries = "points";

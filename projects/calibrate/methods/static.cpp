@@ -29,8 +29,8 @@ Expected<StaticSensor> parse_sensor(const json& entry, std::size_t index, const 
     sensor.id = id;
     SEAM_TRY(auto plate, link_field(entry, "world_from_plate", where));
     sensor.world_from_plate = plate;
-    const bool inverted = entry.contains("camera_from_plate");
-    if (inverted && entry.contains("plate_from_camera"))
+    const bool inverted = !entry.contains("plate_from_camera");
+    if (!inverted && entry.contains("camera_from_plate"))
         return input_error("plate_from_camera and camera_from_plate are both given", where,
                            "give one of them");
     SEAM_TRY(auto camera, link_field(entry, inverted ? "camera_from_plate" : "plate_from_camera", where));
@@ -137,6 +137,14 @@ CalibrationMethod static_method() {
         R"({"sensors":[{"id"?,"world_from_plate":LINK,"camera_from_plate":LINK,"camera_from_laser":LINK,
    "working_point":[x,y,z]?},..],"reference_from_world":LINK?}
   LINK = POSE or {"pose":POSE,"sigma_mm","sigma_deg"} or {"pose":POSE,"covariance":6x6 (mm, rad)})";
+    m.fields = {{"",
+                 {"sensors", "reference_from_world", "id", "world_from_plate", "camera_from_plate",
+                  "plate_from_camera", "camera_from_laser", "working_point"},
+                 {"board"}},
+                {"sensors[]",
+                 {"id", "world_from_plate", "camera_from_plate", "plate_from_camera", "camera_from_laser",
+                  "working_point"},
+                 {"size", "outline"}}};
     m.example = static_example;
     m.solve = solve_static;
     m.entries = "sensors";

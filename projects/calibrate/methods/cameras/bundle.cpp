@@ -141,6 +141,10 @@ CalibrationMethod bundle_method() {
         R"({"cameras":[{"id"?,"camera":{fx,fy,cx,cy,k1?..,width,height},"world_from_camera":LINK,
    "sights":[{"feature"?,"object":[x,y,z],"pixel":[u,v],"weight"?},..]},..],"sigma_px"?,"start":POSE?}
   LINK = POSE or {"pose":POSE,"sigma_mm","sigma_deg"} or {"pose":POSE,"covariance":6x6 (mm, rad)})";
+    m.fields = {{"", {"cameras", "sigma_px", "start"}, {"board"}},
+                {"cameras[]", {"id", "camera", "world_from_camera", "sights"}, {"size", "outline"}},
+                camera_fields("cameras[].camera"),
+                {"cameras[].sights[]", {"feature", "object", "pixel", "weight"}}};
     m.example = bundle_example;
     m.solve = solve_bundle;
     m.entries = "cameras";

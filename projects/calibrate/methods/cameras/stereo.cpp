@@ -123,6 +123,10 @@ CalibrationMethod stereo_method() {
         R"({"cameras":[CAM,CAM],"points":[{"id"?,"first":[u,v],"second":[u,v],"world":[x,y,z]?},..],"sigma_px"?}
   CAM = {"id"?,"camera":{fx,fy,cx,cy,k1?..,width,height},"world_from_camera":LINK}
   LINK = POSE or {"pose":POSE,"sigma_mm","sigma_deg"} or {"pose":POSE,"covariance":6x6 (mm, rad)})";
+    m.fields = {{"", {"cameras", "points", "sigma_px"}},
+                {"cameras[]", {"id", "camera", "world_from_camera"}},
+                camera_fields("cameras[].camera"),
+                {"points[]", {"id", "first", "second", "world"}}};
     m.example = stereo_example;
     m.solve = solve_stereo;
     m.entries = "points";

@@ -89,6 +89,14 @@ struct DataFields {
         {};  // what sessions put beside them: for thumbnails, for captures to come
 };
 
+// Poses or lengths of a method's data that may have been written in another unit, at a place as above; a link counts as its
+// pose. What answers rest on: without a residual that shows it no unit can be told.
+enum class QuantityKind { poses, lengths };
+struct DataQuantity {
+    std::string at;  // "observations[].base_from_flange"
+    QuantityKind kind = QuantityKind::poses;
+};
+
 // What the conventions of its poses are judged by.
 struct ConventionFits {
     PoseFit fit, screen;
@@ -103,9 +111,10 @@ struct CalibrationMethod {
     std::string layout;  // of its data
     // Data as somebody writes them who starts: small, complete, noisy as real ones. Always the same.
     nlohmann::json (*example)() = nullptr;
-    std::vector<DataFields> fields = {};    // of its data, all of them
-    std::vector<PoseListPlace> poses = {};  // in its data, the robot's first
-    bool table = false;                     // its answer can go into a file of a look-up table
+    std::vector<DataFields> fields = {};        // of its data, all of them
+    std::vector<PoseListPlace> poses = {};      // in its data, the robot's first
+    std::vector<DataQuantity> quantities = {};  // of its data; see other_units.h
+    bool table = false;                         // its answer can go into a file of a look-up table
 
     // Solving. Poses in the data are written as usual (pose_json.h); see solve_calibration().
     Expected<CalibrationSolution> (*solve)(const nlohmann::json& data, const ExcludedIds& exclude) = nullptr;

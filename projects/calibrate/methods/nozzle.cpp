@@ -72,10 +72,10 @@ Expected<void> parse_target(const json& data, NozzleData& set) {
         return input_error("covariance_mm2 and sigma_mm say the same", "target", "give one of them");
     if (matrix) {
         SEAM_TRY(auto covariance, matrix3_of(*matrix, "target.covariance_mm2"));
+        SEAM_OK(check_variances(covariance.diagonal(), "target.covariance_mm2"));
         set.target.covariance_mm2 = covariance;
     } else if (sigma) {
-        SEAM_TRY(auto each, json_number(*field, "sigma_mm", "target"));
-        if (!(each >= 0)) return input_error("a sigma is negative", "target.sigma_mm");
+        SEAM_TRY(auto each, json_sigma_or_exact(*field, "sigma_mm", 0, "target"));
         set.target.covariance_mm2 = each * each * Eigen::Matrix3d::Identity();
     }
     set.exact_place = !matrix && !sigma;
@@ -282,6 +282,7 @@ CalibrationMethod nozzle_method() {
                 robot_fields()};
     m.example = nozzle_example;
     m.poses = {{"touches", kRobotPose}};
+    m.quantities = {{"touches[].base_from_flange"}};
     m.solve = solve_nozzle;
     m.convention_fits = nozzle_conventions;
     m.entries = "touches";

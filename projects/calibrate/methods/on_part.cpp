@@ -52,6 +52,7 @@ Expected<EdgeProfile> parse_edge_profile(const json& entry, const std::string& w
     profile.point_mm = point;
     if (const auto it = entry.find("covariance"); it != entry.end() && !it->is_null()) {
         SEAM_TRY(auto covariance, square_matrix(*it, 2, json_path(where, "covariance")));
+        SEAM_OK(check_variances(covariance.diagonal(), json_path(where, "covariance")));
         profile.covariance_mm2 = covariance;
     }
     return profile;
@@ -111,6 +112,7 @@ Expected<OnPartOptions> parse_on_part_options(const json& data, const ExcludedId
         SEAM_TRY(auto pose, parse_pose(*field, "prior.flange_from_sensor"));
         SEAM_TRY(auto rows, json_field(*it, "covariance", "prior"));
         SEAM_TRY(auto covariance, square_matrix(*rows, 6, "prior.covariance"));
+        SEAM_OK(check_variances(covariance.diagonal(), "prior.covariance"));
         options.prior = MountingPrior{pose, Matrix6(covariance)};
     }
     return options;
@@ -265,6 +267,8 @@ CalibrationMethod on_part_method() {
                 {"prior", {"flange_from_sensor", "covariance"}},
                 robot_fields()};
     m.example = on_part_example;
+    m.quantities = {{"passes[].profiles[].base_from_flange"},
+                    {"passes[].profiles[].point", QuantityKind::lengths}};
     m.solve = solve_on_part;
     m.entries = "passes";
     m.repeatability = true;

@@ -84,7 +84,7 @@ Expected<CalibrationSolution> solve_plate(const json& data, const ExcludedIds& e
     PlateOptions options;
     options.exclude = exclude;
     if (data.contains("sigma_mm") && !data["sigma_mm"].is_null()) {
-        SEAM_TRY(auto sigma, json_number(data, "sigma_mm", ""));
+        SEAM_TRY(auto sigma, json_sigma(data, "sigma_mm", ""));
         options.sigma_mm = sigma;
     }
     SEAM_TRY(const auto robot, repeatability_of(data));

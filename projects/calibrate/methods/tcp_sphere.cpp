@@ -119,6 +119,7 @@ CalibrationMethod tcp_sphere_method() {
                 robot_fields()};
     m.example = tcp_sphere_example;
     m.poses = {{"observations", kRobotPose}};
+    m.quantities = {{"observations[].base_from_flange"}, {"observations[].profile", QuantityKind::lengths}};
     m.solve = solve_tcp_sphere;
     m.convention_fits = tcp_sphere_conventions;
     m.entries = "observations";

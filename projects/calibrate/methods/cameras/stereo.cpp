@@ -61,7 +61,7 @@ Expected<CalibrationSolution> solve_stereo(const json& data, const ExcludedIds& 
     StereoOptions options;
     options.exclude = exclude;
     if (data.contains("sigma_px")) {
-        SEAM_TRY(auto sigma, json_number(data, "sigma_px", ""));
+        SEAM_TRY(auto sigma, json_sigma(data, "sigma_px", ""));
         options.sigma_px = sigma;
     }
     SEAM_TRY(auto solved, intersect(first, second, sights, options));
@@ -128,6 +128,7 @@ CalibrationMethod stereo_method() {
                 camera_fields("cameras[].camera"),
                 {"points[]", {"id", "first", "second", "world"}}};
     m.example = stereo_example;
+    m.quantities = {{"cameras[].world_from_camera"}};
     m.solve = solve_stereo;
     m.entries = "points";
     m.use = AnswerUse::record;

@@ -245,6 +245,7 @@ CalibrationMethod stripe_camera_method() {
                 robot_fields()};
     m.example = stripe_camera_example;
     m.poses = {{"frames", kRobotPose}};
+    m.quantities = {{"frames[].base_from_flange"}};
     m.solve = solve_stripe_camera;
     m.data_of_images = stripe_folder_data;
     m.convention_fits = stripe_camera_conventions;

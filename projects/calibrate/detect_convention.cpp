@@ -27,6 +27,7 @@ Expected<ConventionAnswer> detect_pose_convention(const CalibrationMethod& metho
     if (!method.convention_fits)
         return usage_error("its data leave no residual that a convention of poses shows in", where,
                            "ask of tcp-sphere, hand-eye or stripe-camera data of the same robot");
+    SEAM_OK(check_fields(method, data));
     SEAM_TRY(const auto lists, written_poses(method.poses, data));
     if (lists.empty()) return input_error("there are no poses", where, "leave --detect-convention out");
     SEAM_TRY(const auto fits, method.convention_fits(data, exclude));

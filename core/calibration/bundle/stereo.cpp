@@ -22,6 +22,7 @@ constexpr double kAllowedTimes = 9, kSmallestPattern_px = 0.1;
 constexpr double kNoSlope = 1e-12;              // guards the scale of a number that moves no gap
 constexpr double kSmallestKnownMiss_mm = 0.05;  // of a known point: less contradicts nothing
 constexpr double kThreeNumbers = 6;             // of chi squared: what three numbers may show beyond one
+constexpr double kRounding_mm = 1e-6;           // cameras that are nearer were given the same place
 constexpr double kSamePlace_mm = 1;             // cameras that stand nearer stand in one place
 constexpr double kParallelSine2 = 1e-12;
 constexpr int kManyGaps = 8;
@@ -203,7 +204,11 @@ Judgement judged(const StereoResult& r, const KnownPoints& known, double pattern
 Expected<void> check(const PlacedCamera& first, const PlacedCamera& second,
                      const std::vector<StereoSight>& sights, const StereoOptions& options) {
     SEAM_OK(check_cameras({first, second}));
-    if (distance_mm(first.world_from_camera.pose, second.world_from_camera.pose) < kSamePlace_mm)
+    const std::vector<Pose> places{first.world_from_camera.pose, second.world_from_camera.pose};
+    const bool apart = (places[0].translation() - places[1].translation()).norm() > kRounding_mm;
+    if (distance_mm(places[0], places[1]) < kSamePlace_mm && apart)
+        SEAM_OK(check_millimetres(places, "cameras"));
+    if (distance_mm(places[0], places[1]) < kSamePlace_mm)
         return input_error("both cameras stand in the same place", "cameras",
                            "say where each stands in the world");
     if (sights.empty()) return input_error("there are no points", "points", "give one or more");

@@ -28,6 +28,7 @@ constexpr double kChanged = 0.99;  // probability below which nothing has change
 constexpr double kCoarsest = 20;   // limits of the shift: what is known no better takes no part
 // Measurements that disagree among themselves by more: a target has moved; by less, a robot can be as inexact.
 constexpr double kRobotScatter_mm = 0.5;
+constexpr double kOtherConvention_mm = 10;  // no target moves that far unseen: the poses mean something else
 constexpr double kMostScatter_mm = 1000, kScatterTold = 0.01;  // the search's end, and how closely it tells
 constexpr int kHalvings = 40;
 
@@ -359,7 +360,10 @@ Expected<DriftResult> check_drift(const std::vector<DriftMeasurement>& measureme
             Text("the measurements contradict the stored places and no rigid change of the sensor "
                  "explains them ({:.3f} mm remain)",
                  found.scatter_mm),
-            "check that no target has moved, then calibrate again"};
+            found.scatter_mm > kOtherConvention_mm ? "check that the robot's poses are written in the "
+                                                     "convention and the units that the calibration "
+                                                     "was made with, and that no target has moved"
+                                                   : "check that no target has moved, then calibrate again"};
     } else if (found.significant && beyond) {
         result.status = DriftStatus::drifted;
         report.judgement = {Verdict::poor, Text("the calibration no longer holds: {}", change),

@@ -62,6 +62,28 @@ Expected<void> check_scale(const std::vector<Pose>& a, const std::vector<Pose>& 
                        "pitch_mm", "measure the board");
 }
 
+// Those that hand-eye used, and those that fit its answer as these do: beside a wrong one a good one looks wrong at first.
+std::vector<bool> fitting(const HandEyeResult& start, const std::vector<Pose>& a,
+                          const std::vector<Pose>& b) {
+    constexpr double kAsTheOthers = 3;  // times the worst of those used
+    std::vector<double> mm, rad;
+    std::vector<bool> fits;
+    double worst_mm = 0, worst_rad = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const Pose target = a[i] * start.x * b[i];
+        mm.push_back(distance_mm(target, start.y));
+        rad.push_back(angle_rad(target, start.y));
+        fits.push_back(start.report.poses[i].used);
+        if (fits.back()) {
+            worst_mm = std::max(worst_mm, mm.back());
+            worst_rad = std::max(worst_rad, rad.back());
+        }
+    }
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if (mm[i] < kAsTheOthers * worst_mm && rad[i] < kAsTheOthers * worst_rad) fits[i] = true;
+    return fits;
+}
+
 }  // namespace
 
 // Hand-eye start; settles which way round a symmetric board was read; checks lengths against the robot's
@@ -103,11 +125,19 @@ Expected<void> StripeCameraSolver::start_robot() {
                                                 : start->degenerate.front();
         return {};
     }
-    SEAM_OK(check_scale(a, b, start->x.linear(), spec_.pitch_mm));
+    // A wrong pose would stretch the robot's motion against the board's.
+    const std::vector<bool> fits = fitting(*start, a, b);
+    std::vector<Pose> fitting_a, fitting_b;
+    for (std::size_t i = 0; i < with.size(); ++i)
+        if (fits[i]) {
+            fitting_a.push_back(a[i]);
+            fitting_b.push_back(b[i]);
+        }
+    SEAM_OK(check_scale(fitting_a, fitting_b, start->x.linear(), spec_.pitch_mm));
     state_.flange_from_camera = start->x;
     state_.base_from_target = start->y;
     for (std::size_t i = 0; i < with.size(); ++i)
-        if (!start->report.poses[i].used) {
+        if (!fits[i]) {
             bundle_.base_from_flange[with[i]].reset();
             result_.frames[view_frame_[with[i]]].note =
                 "its robot pose contradicts the others and was left out";

@@ -27,6 +27,43 @@ Expected<std::pair<int, int>> image_size_of(const json& data, const std::string&
     return std::pair(static_cast<int>(size[0]), static_cast<int>(size[1]));
 }
 
+namespace {
+
+constexpr double kLeastSigma = 1e-9;  // beneath, its inverse square is beyond what the solvers carry
+
+Expected<double> within(double sigma, bool exact, const std::string& key, const std::string& where) {
+    const double most = key.ends_with("_deg") ? kLargestSigma_deg : kLargestSigma;
+    if (sigma <= most && (sigma >= kLeastSigma || (exact && sigma == 0))) return sigma;
+    const std::string at = json_path(where, key);
+    return exact ? input_error(Text("the sigma is negative or above {:.0f}", most), at,
+                               "give one standard deviation, 0 for exact")
+                 : input_error(Text("the sigma is not above 0 and up to {:.0f}", most), at,
+                               "give one standard deviation, or leave the field out");
+}
+
+}  // namespace
+
+Expected<double> json_sigma(const json& entry, const std::string& key, const std::string& where) {
+    SEAM_TRY(const double sigma, json_number(entry, key, where));
+    return within(sigma, false, key, where);
+}
+
+Expected<double> json_sigma_or_exact(const json& entry, const std::string& key, double otherwise,
+                                     const std::string& where) {
+    SEAM_TRY(const double sigma, json_number_or(entry, key, otherwise, where));
+    return within(sigma, true, key, where);
+}
+
+Expected<void> check_variances(const Eigen::VectorXd& variances, const std::string& where) {
+    for (Eigen::Index i = 0; i < variances.size(); ++i) {
+        const double most = i < 3 ? kLargestSigma : rad_from_deg(kLargestSigma_deg);
+        if (!(variances[i] <= most * most))
+            return input_error("a variance is above that of 1000 mm or 180 degrees", where,
+                               "give mm^2 and rad^2");
+    }
+    return {};
+}
+
 Expected<RobotRepeatability> repeatability_of(const json& data) {
     const auto robot = data.find("robot");
     if (robot == data.end() || robot->is_null()) return RobotRepeatability{};

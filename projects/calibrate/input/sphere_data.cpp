@@ -10,6 +10,8 @@ namespace seamwright {
 
 using nlohmann::json;
 
+constexpr double kLargestSphere_mm = 1000;  // radius
+
 Expected<SphereObservation> parse_sphere_observation(const json& entry, std::size_t index,
                                                      const std::string& where) {
     SphereObservation observation;
@@ -50,6 +52,9 @@ Expected<SphereData> parse_sphere_data(const json& data, const std::vector<std::
                            "give it in millimetres, or null to solve for it");
     if (!data["radius_mm"].is_null()) {
         SEAM_TRY(auto radius, json_number(data, "radius_mm", ""));
+        if (radius > kLargestSphere_mm)
+            return input_error("the sphere's radius is not between 0.1 and 1000 mm", "radius_mm",
+                               "give it in millimetres as its certificate says");
         options.radius_mm = radius;
     }
     if (const auto it = data.find("nominal_flange_from_sensor"); it != data.end() && !it->is_null()) {

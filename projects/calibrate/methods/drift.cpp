@@ -11,6 +11,7 @@
 //     "chi_squared_limit","not_determined",...}
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "core/calibration/sphere/drift_check.h"
@@ -26,6 +27,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr double kSmallestSphere_mm = 0.1, kLargestSphere_mm = 1000;  // radius
+
 // A field of the entry, or the one at the top that counts for all.
 const json& entry_or_top(const json& entry, const json& data, const char* key) {
     return entry.contains(key) ? entry : data;
@@ -35,8 +38,7 @@ Expected<std::vector<DriftMeasurement>> from_spheres(const json& data,
                                                      const std::vector<std::string>& exclude) {
     SEAM_TRY(auto stored_field, json_field(data, "flange_from_sensor", ""));
     SEAM_TRY(auto stored, parse_pose(*stored_field, "flange_from_sensor"));
-    SEAM_TRY(auto other, json_number_or(data, "other_sigma_mm", 0.02, ""));
-    if (other < 0) return input_error("a sigma is negative", "other_sigma_mm");
+    SEAM_TRY(auto other, json_sigma_or_exact(data, "other_sigma_mm", 0.02, ""));
     SEAM_TRY(auto list, json_array(data, "observations", ""));
     std::vector<DriftMeasurement> measurements;
     for (std::size_t i = 0; i < list->size(); ++i) {
@@ -45,6 +47,10 @@ Expected<std::vector<DriftMeasurement>> from_spheres(const json& data,
         SEAM_TRY(auto observation, parse_sphere_observation(entry, i, where));
         if (std::find(exclude.begin(), exclude.end(), observation.id) != exclude.end()) continue;
         SEAM_TRY(auto radius, json_number(entry_or_top(entry, data, "radius_mm"), "radius_mm", where));
+        if (!(radius >= kSmallestSphere_mm && radius <= kLargestSphere_mm))
+            return input_error("the sphere's radius is not between 0.1 and 1000 mm",
+                               entry.contains("radius_mm") ? json_path(where, "radius_mm") : "radius_mm",
+                               "give it in millimetres as its certificate says");
         SEAM_TRY(auto centre,
                  json_vector3(entry_or_top(entry, data, "centre_base_mm"), "centre_base_mm", where));
         SEAM_TRY(auto measurement, drift_measurement(observation, radius, stored, centre, other));
@@ -80,8 +86,10 @@ Expected<std::vector<DriftMeasurement>> from_points(const json& data,
         if (stored) m.by_stored.leftCols<6>() = drift_by_mounting(*stored, measured);
         SEAM_TRY(auto known, json_vector3(entry, "known_base", where));
         m.known_base_mm = known;
-        SEAM_TRY(auto sigma, json_number_or(entry, "sigma_mm", 0.05, where));
-        if (sigma <= 0) return input_error("the sigma is not positive", json_path(where, "sigma_mm"));
+        double sigma = 0.05;
+        if (entry.contains("sigma_mm")) {
+            SEAM_TRY(sigma, json_sigma(entry, "sigma_mm", where));
+        }
         m.covariance = sigma * sigma * Eigen::Matrix3d::Identity();
         measurements.push_back(m);
     }
@@ -107,6 +115,9 @@ Expected<StoredCovariance> stored_covariance(const json& data) {
             stored(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
                 row[k].get<double>() * turns(i) * turns(k);
         }
+    Eigen::VectorXd variances = stored.diagonal().head(static_cast<Eigen::Index>(n));
+    if (n > 6) variances.tail(static_cast<Eigen::Index>(n) - 6) *= std::pow(rad_from_deg(1), 2);
+    SEAM_OK(check_variances(variances, "covariance"));
     return stored;
 }
 
@@ -212,8 +223,21 @@ CalibrationMethod drift_method() {
         R"({"flange_from_sensor":POSE,"centre_base_mm":[x,y,z],"radius_mm":R,"other_sigma_mm"?,"robot":{"sigma_mm","sigma_deg"?}?,
    "limits":{"translation_mm","rotation_deg"}?,"covariance":as in tcp-sphere's result?,"observations":[{"id"?,"base_from_flange":POSE,"profile":[[x,z],..]},..]}
   or {"measurements":[{"id"?,"base_from_flange":POSE,"measured_flange":[x,y,z],"known_base":[x,y,z],"sigma_mm"?},..]})";
+    m.fields = {{"",
+                 {"flange_from_sensor", "centre_base_mm", "radius_mm", "observations", "measurements",
+                  "other_sigma_mm", "limits", "covariance", "robot"}},
+                {"observations[]", {"id", "base_from_flange", "profile", "centre_base_mm", "radius_mm"}},
+                {"measurements[]", {"id", "base_from_flange", "measured_flange", "known_base", "sigma_mm"}},
+                {"limits", {"translation_mm", "rotation_deg"}},
+                robot_fields()};
     m.example = drift_example;
     m.poses = {{"observations", kRobotPose}, {"measurements", kRobotPose}};
+    m.quantities = {{"observations[].base_from_flange"},
+                    {"observations[].profile", QuantityKind::lengths},
+                    {"measurements[].base_from_flange"},
+                    {"measurements[].measured_flange", QuantityKind::lengths},
+                    {"measurements[].known_base", QuantityKind::lengths},
+                    {"flange_from_sensor"}};
     m.solve = solve_drift;
     m.entries = "observations";
     m.capture = CaptureKind::sphere_profile;

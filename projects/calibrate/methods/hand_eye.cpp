@@ -3,12 +3,7 @@
 // -> {"status","flange_from_camera" | "base_from_camera","base_from_target" |
 // "flange_from_target","rms_mm","rms_deg","sigma","target_size":{"factor","sigma"},...}
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 #include "core/calibration/pose/hand_eye.h"
-#include "core/geometry/notation.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/input/hand_eye_data.h"
@@ -21,60 +16,9 @@ using nlohmann::json;
 
 namespace {
 
-// As KUKA A, B, C whose radians were read as degrees.
-Pose from_radians(const Pose& pose) {
-    const KukaAbc read = kuka_from_rotation(pose.linear());
-    return make_pose(
-        rotation_from_kuka({deg_from_rad(read.a_deg), deg_from_rad(read.b_deg), deg_from_rad(read.c_deg)}),
-        pose.translation());
-}
-
-bool angles_of_radians(const std::vector<HandEyePair>& pairs, Pose HandEyePair::*list) {
-    constexpr double kHalfTurn = 3.2;  // rad
-    return std::all_of(pairs.begin(), pairs.end(), [&](const HandEyePair& pair) {
-        const KukaAbc read = kuka_from_rotation((pair.*list).linear());
-        return std::max({std::abs(read.a_deg), std::abs(read.b_deg), std::abs(read.c_deg)}) < kHalfTurn;
-    });
-}
-
-// Pairs that do not fit as they are, but in another unit; empty: in none.
-Text other_unit(const HandEyeData& set, const ExcludedIds& exclude) {
-    using List = Pose HandEyePair::*;
-    const std::array<std::pair<List, const char*>, 2> lists{
-        {{&HandEyePair::base_from_flange, "base_from_flange"},
-         {&HandEyePair::camera_from_target, "camera_from_target"}}};
-    const auto fits = [&](const std::vector<HandEyePair>& pairs) {
-        const auto solved = calibrate_hand_eye(set.mount, pairs, exclude, set.robot);
-        return solved && solved->status == HandEyeStatus::ok && serves(solved->report.judgement.verdict);
-    };
-    std::vector<HandEyePair> both = set.pairs;
-    int small = 0;
-    for (const auto& [list, name] : lists) {
-        if (!angles_of_radians(set.pairs, list)) continue;
-        std::vector<HandEyePair> pairs = set.pairs;
-        for (HandEyePair& p : pairs) p.*list = from_radians(p.*list);
-        if (fits(pairs)) return Text("the angles of {} are radians: write degrees", name);
-        for (HandEyePair& p : both) p.*list = from_radians(p.*list);
-        ++small;
-    }
-    if (small == 2 && fits(both)) return "the angles of both lists are radians: write degrees";
-    constexpr std::array<std::pair<double, const char*>, 2> kUnits{{{25.4, "inches"}, {1000, "metres"}}};
-    for (const auto& [list, name] : lists)
-        for (const auto& [factor, unit] : kUnits) {
-            std::vector<HandEyePair> pairs = set.pairs;
-            for (HandEyePair& p : pairs) (p.*list).translation() *= factor;
-            if (fits(pairs)) return Text("the lengths of {} are {}: write millimetres", name, Text(unit));
-        }
-    return {};
-}
-
 Expected<CalibrationSolution> solve_hand_eye(const json& data, const ExcludedIds& exclude) {
     SEAM_TRY(auto set, parse_hand_eye_data(data));
     SEAM_TRY(auto solved, calibrate_hand_eye(set.mount, set.pairs, exclude, set.robot));
-
-    if (!serves(solved.report.judgement.verdict))
-        if (Text unit = other_unit(set, exclude); !unit.empty())
-            solved.report.judgement.cure = std::move(unit);
 
     CalibrationSolution solution;
     json& result = solution.document;
@@ -138,8 +82,12 @@ CalibrationMethod hand_eye_method() {
     m.layout =
         R"({"mount":"eye_in_hand"|"eye_to_hand","pairs":[{"id"?,"base_from_flange":POSE,"camera_from_target":POSE},..],
    "robot":{"sigma_mm","sigma_deg"?}?})";
+    m.fields = {{"", {"mount", "pairs", "robot"}, {"board"}},
+                {"pairs[]", {"id", "base_from_flange", "camera_from_target"}, {"size", "outline"}},
+                robot_fields()};
     m.example = hand_eye_example;
     m.poses = {{"pairs", kRobotPose}, {"pairs", "camera_from_target"}};
+    m.quantities = {{"pairs[].base_from_flange"}, {"pairs[].camera_from_target"}};
     m.solve = solve_hand_eye;
     m.convention_fits = hand_eye_conventions;
     m.entries = "pairs";

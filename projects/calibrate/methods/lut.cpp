@@ -88,6 +88,9 @@ CalibrationMethod lut_method() {
     m.usage = "pairs.json --table table.lut";
     m.layout = R"({"size":[W,H],"step_px"?,"pairs":[{"id"?,"pixel":[u,v],"laser":[x,z]},..],
    "robot":{"sigma_mm","sigma_deg"?,"lever_mm"?}?}   px, mm)";
+    m.fields = {{"", {"size", "step_px", "pairs", "robot"}, {"anchor"}},
+                {"pairs[]", {"id", "pixel", "laser"}, {"flanks"}},
+                {"robot", {"sigma_mm", "sigma_deg", "lever_mm"}}};
     m.example = lut_example;
     m.table = m.repeatability = true;
     m.prepare = prepare_lut;

@@ -146,4 +146,52 @@ std::vector<MethodSetting> board_settings() {
                        "ChArUco as OpenCV drew it before version 4.6.", "Old layout")};
 }
 
+DataFields robot_fields() {
+    return {"robot", {"sigma_mm", "sigma_deg"}};
+}
+
+DataFields camera_fields(std::string at) {
+    return {std::move(at), {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "width", "height"}};
+}
+
+namespace {
+
+Expected<void> check_object(const json& object, const DataFields& fields, const std::string& where) {
+    const auto in = [](const std::vector<std::string_view>& list, const std::string& key) {
+        return std::find(list.begin(), list.end(), key) != list.end();
+    };
+    for (const auto& [key, value] : object.items())
+        if (!in(fields.known, key) && !in(fields.written, key))
+            return only_fields(json{{key, nullptr}}, fields.known, where);
+    return {};
+}
+
+// `at` is what is left of the place.
+Expected<void> check_at(const json& value, std::string_view at, const DataFields& fields,
+                        const std::string& where) {
+    if (at.starts_with("[]")) {
+        if (!value.is_array()) return {};
+        for (std::size_t i = 0; i < value.size(); ++i)
+            SEAM_OK(check_at(value[i], at.substr(2), fields, json_path(where, i)));
+        return {};
+    }
+    if (!value.is_object()) return {};
+    if (at.empty()) return check_object(value, fields, where);
+    if (at.front() == '.') at.remove_prefix(1);
+    const std::string key(at.substr(0, at.find_first_of(".[")));
+    const auto it = value.find(key);
+    return it == value.end() ? Expected<void>()
+                             : check_at(*it, at.substr(key.size()), fields, json_path(where, key));
+}
+
+}  // namespace
+
+Expected<void> check_fields(const CalibrationMethod& method, const json& data) {
+    for (DataFields fields : method.fields) {
+        if (fields.at.empty() && !method.poses.empty()) fields.known.emplace_back("pose_convention");
+        SEAM_OK(check_at(data, fields.at, fields, ""));
+    }
+    return {};
+}
+
 }  // namespace seamwright

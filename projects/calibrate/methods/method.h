@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/calibration/pose/convention_detective.h"
@@ -78,6 +79,24 @@ struct BoardImages {
     ReadProgress progress = {};  // may be empty
 };
 
+// The fields that the objects at one place of a method's data may have. `at`: "" the data, "robot" an object in it,
+// "passes[].profiles[]" every entry of a list in every entry of another. What is checked where it is read (poses, links, a
+// nozzle's target) needs no place of its own.
+struct DataFields {
+    std::string at;
+    std::vector<std::string_view> known;  // as people write them
+    std::vector<std::string_view> written =
+        {};  // what sessions put beside them: for thumbnails, for captures to come
+};
+
+// Poses or lengths of a method's data that may have been written in another unit, at a place as above; a link counts as its
+// pose. What answers rest on: without a residual that shows it no unit can be told.
+enum class QuantityKind { poses, lengths };
+struct DataQuantity {
+    std::string at;  // "observations[].base_from_flange"
+    QuantityKind kind = QuantityKind::poses;
+};
+
 // What the conventions of its poses are judged by.
 struct ConventionFits {
     PoseFit fit, screen;
@@ -92,8 +111,10 @@ struct CalibrationMethod {
     std::string layout;  // of its data
     // Data as somebody writes them who starts: small, complete, noisy as real ones. Always the same.
     nlohmann::json (*example)() = nullptr;
-    std::vector<PoseListPlace> poses = {};  // in its data, the robot's first
-    bool table = false;                     // its answer can go into a file of a look-up table
+    std::vector<DataFields> fields = {};        // of its data, all of them
+    std::vector<PoseListPlace> poses = {};      // in its data, the robot's first
+    std::vector<DataQuantity> quantities = {};  // of its data; see other_units.h
+    bool table = false;                         // its answer can go into a file of a look-up table
 
     // Solving. Poses in the data are written as usual (pose_json.h); see solve_calibration().
     Expected<CalibrationSolution> (*solve)(const nlohmann::json& data, const ExcludedIds& exclude) = nullptr;
@@ -146,5 +167,13 @@ MethodSetting choice_setting(const char* name, const char* pointer, std::vector<
                              std::vector<nlohmann::json> written, const char* help, Text label);
 MethodSetting sphere_radius_setting();
 std::vector<MethodSetting> board_settings();
+
+// "robot":{"sigma_mm","sigma_deg"?}
+DataFields robot_fields();
+// CAMERA at this place
+DataFields camera_fields(std::string at);
+// Error (input): a field that the method does not know, which would silently mean its default otherwise. What is no object or
+// no list where one belongs is left to the method.
+Expected<void> check_fields(const CalibrationMethod& method, const nlohmann::json& data);
 
 }  // namespace seamwright

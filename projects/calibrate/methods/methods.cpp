@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "projects/calibrate/methods/other_units.h"
+
 namespace seamwright {
 
 const std::vector<CalibrationMethod>& calibration_methods() {
@@ -22,8 +24,10 @@ Expected<CalibrationSolution> solve_calibration(const CalibrationMethod& method,
                                                 const ExcludedIds& exclude) {
     if (!data.is_object())
         return input_error("the data is not a JSON object", "", Text("see calibrate {} --help", method.id));
+    SEAM_OK(check_fields(method, data));
     SEAM_TRY(const auto meant, with_usual_poses(method.poses, data));
     auto solution = method.solve(meant.data(), exclude);
+    name_other_unit(method, meant.data(), exclude, solution);
     if (!solution) return solution;
     solution->document["method"] = method.id;
     meant.put(solution->document);

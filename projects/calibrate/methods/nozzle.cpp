@@ -72,10 +72,10 @@ Expected<void> parse_target(const json& data, NozzleData& set) {
         return input_error("covariance_mm2 and sigma_mm say the same", "target", "give one of them");
     if (matrix) {
         SEAM_TRY(auto covariance, matrix3_of(*matrix, "target.covariance_mm2"));
+        SEAM_OK(check_variances(covariance.diagonal(), "target.covariance_mm2"));
         set.target.covariance_mm2 = covariance;
     } else if (sigma) {
-        SEAM_TRY(auto each, json_number(*field, "sigma_mm", "target"));
-        if (!(each >= 0)) return input_error("a sigma is negative", "target.sigma_mm");
+        SEAM_TRY(auto each, json_sigma_or_exact(*field, "sigma_mm", 0, "target"));
         set.target.covariance_mm2 = each * each * Eigen::Matrix3d::Identity();
     }
     set.exact_place = !matrix && !sigma;
@@ -277,8 +277,12 @@ CalibrationMethod nozzle_method() {
      "radius_sigma_mm"? (absent: 0.5 % of the radius),"covariance_mm2":3x3 or "sigma_mm"?},"touches":[{"id"?,"base_from_flange":POSE},..],
    "sigma_mm"? (of a touch; absent: from the scatter),"tip_radius_mm"?,"programmed":POSE? (flange_from_tool),
    "robot":{"sigma_mm","sigma_deg"?}?}   mm, robot's base; |base_from_flange tip - place| = radius + tip_radius)";
+    m.fields = {{"", {"target", "touches", "sigma_mm", "tip_radius_mm", "programmed", "robot"}},
+                {"touches[]", {"id", "base_from_flange"}},
+                robot_fields()};
     m.example = nozzle_example;
     m.poses = {{"touches", kRobotPose}};
+    m.quantities = {{"touches[].base_from_flange"}};
     m.solve = solve_nozzle;
     m.convention_fits = nozzle_conventions;
     m.entries = "touches";

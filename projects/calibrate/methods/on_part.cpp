@@ -52,6 +52,7 @@ Expected<EdgeProfile> parse_edge_profile(const json& entry, const std::string& w
     profile.point_mm = point;
     if (const auto it = entry.find("covariance"); it != entry.end() && !it->is_null()) {
         SEAM_TRY(auto covariance, square_matrix(*it, 2, json_path(where, "covariance")));
+        SEAM_OK(check_variances(covariance.diagonal(), json_path(where, "covariance")));
         profile.covariance_mm2 = covariance;
     }
     return profile;
@@ -111,6 +112,7 @@ Expected<OnPartOptions> parse_on_part_options(const json& data, const ExcludedId
         SEAM_TRY(auto pose, parse_pose(*field, "prior.flange_from_sensor"));
         SEAM_TRY(auto rows, json_field(*it, "covariance", "prior"));
         SEAM_TRY(auto covariance, square_matrix(*rows, 6, "prior.covariance"));
+        SEAM_OK(check_variances(covariance.diagonal(), "prior.covariance"));
         options.prior = MountingPrior{pose, Matrix6(covariance)};
     }
     return options;
@@ -259,7 +261,14 @@ CalibrationMethod on_part_method() {
      "covariance":[[xx,xz],[xz,zz]]?},..]},..],"latency":"free" or seconds?,
    "prior":{"flange_from_sensor":POSE,"covariance":6x6 (mm, rad)}?,"robot":{"sigma_mm","sigma_deg"}?}
   p_k = F(t_k - latency) flange_from_sensor (x,0,z) lies on the edge; latency above zero: the profile is older than its stamp)";
+    m.fields = {{"", {"passes", "latency", "prior", "robot"}},
+                {"passes[]", {"id", "edge", "profiles"}},
+                {"passes[].profiles[]", {"time_s", "base_from_flange", "point", "covariance"}},
+                {"prior", {"flange_from_sensor", "covariance"}},
+                robot_fields()};
     m.example = on_part_example;
+    m.quantities = {{"passes[].profiles[].base_from_flange"},
+                    {"passes[].profiles[].point", QuantityKind::lengths}};
     m.solve = solve_on_part;
     m.entries = "passes";
     m.repeatability = true;

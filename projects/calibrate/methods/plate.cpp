@@ -84,7 +84,7 @@ Expected<CalibrationSolution> solve_plate(const json& data, const ExcludedIds& e
     PlateOptions options;
     options.exclude = exclude;
     if (data.contains("sigma_mm") && !data["sigma_mm"].is_null()) {
-        SEAM_TRY(auto sigma, json_number(data, "sigma_mm", ""));
+        SEAM_TRY(auto sigma, json_sigma(data, "sigma_mm", ""));
         options.sigma_mm = sigma;
     }
     SEAM_TRY(const auto robot, repeatability_of(data));
@@ -219,6 +219,10 @@ CalibrationMethod plate_method() {
     m.usage = "points.json";
     m.layout = R"({"points":[{"id"?,"plate":[x,y,z],"world":[x,y,z]},..],"sigma_mm"?,
    "robot":{"sigma_mm","sigma_deg"?}?}   mm)";
+    m.fields = {{"", {"points", "sigma_mm", "robot"}, {"board"}},
+                {"points[]", {"id", "plate", "world", "points", "base_from_flange"}, {"size", "outline"}},
+                {"points[].points[]", {"id", "plate", "world"}},
+                robot_fields()};
     m.example = plate_example;
     m.solve = solve_plate;
     m.entries = "points";

@@ -7,16 +7,25 @@
 // covariance),"shares","verdict",..}],..}; no report but its judgement.
 
 #include "core/calibration/pose/static_chain.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/notation.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/methods/cameras/several_cameras.h"
 #include "projects/calibrate/methods/example/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
+#include "projects/calibrate/methods/other_units.h"
+#include "projects/file/stored_text.h"
 
 namespace seamwright {
 namespace {
 
 using nlohmann::json;
+
+constexpr double kNoAngle_deg = 1e-6;  // a frame that is the camera's own
 
 Expected<UncertainPose> link_field(const json& entry, const std::string& key, const std::string& where) {
     SEAM_TRY(auto field, json_field(entry, key, where));
@@ -29,8 +38,8 @@ Expected<StaticSensor> parse_sensor(const json& entry, std::size_t index, const 
     sensor.id = id;
     SEAM_TRY(auto plate, link_field(entry, "world_from_plate", where));
     sensor.world_from_plate = plate;
-    const bool inverted = entry.contains("camera_from_plate");
-    if (inverted && entry.contains("plate_from_camera"))
+    const bool inverted = !entry.contains("plate_from_camera");
+    if (!inverted && entry.contains("camera_from_plate"))
         return input_error("plate_from_camera and camera_from_plate are both given", where,
                            "give one of them");
     SEAM_TRY(auto camera, link_field(entry, inverted ? "camera_from_plate" : "plate_from_camera", where));
@@ -43,6 +52,34 @@ Expected<StaticSensor> parse_sensor(const json& entry, std::size_t index, const 
         sensor.working_point_mm = point;
     }
     return sensor;
+}
+
+// A link has no residual that could show its unit. Square sensors stand within 3 degrees as well, so nothing is refused; no
+// laser plane lies so flat in its camera, and quarter and half turns in radians lie above 1.2.
+std::vector<Text> angles_to_check(const std::vector<StaticSensor>& sensors) {
+    constexpr double kQuarterTurn = 1.2;
+    const auto largest = [](const Pose& pose) {
+        const KukaAbc read = kuka_from_rotation(pose.linear());
+        return std::max({std::abs(read.a_deg), std::abs(read.b_deg), std::abs(read.c_deg)});
+    };
+    std::vector<Text> notices;
+    for (const char* link : {"world_from_plate", "camera_from_plate", "camera_from_laser"}) {
+        std::vector<Pose> poses;
+        double most = 0;
+        const bool laser = link == std::string_view("camera_from_laser");
+        for (const StaticSensor& s : sensors) {
+            poses.push_back(laser ? s.camera_from_laser.pose
+                            : link == std::string_view("world_from_plate")
+                                ? s.world_from_plate.pose
+                                : s.plate_from_camera.pose.inverse());
+            most = std::max(most, largest(poses.back()));
+        }
+        if (may_be_radians(poses) && (laser ? most > kNoAngle_deg : most > kQuarterTurn))
+            notices.push_back(
+                Text("no angle of {} is above {:.1f} degrees: if they are radians, write degrees", link,
+                     kHalfTurnOfRadians));
+    }
+    return notices;
 }
 
 Expected<CalibrationSolution> solve_static(const json& data, const ExcludedIds& exclude) {
@@ -94,6 +131,8 @@ Expected<CalibrationSolution> solve_static(const json& data, const ExcludedIds& 
     if (!data.contains("sensors")) result[frame] = list[0][frame];
     result["sensors"] = std::move(list);
     solution.found = std::move(found);
+    solution.notices = angles_to_check(sensors);
+    put_texts(result, "notices", solution.notices);
     solution.report.judgement = solved.judgement;
     return solution;
 }
@@ -137,6 +176,14 @@ CalibrationMethod static_method() {
         R"({"sensors":[{"id"?,"world_from_plate":LINK,"camera_from_plate":LINK,"camera_from_laser":LINK,
    "working_point":[x,y,z]?},..],"reference_from_world":LINK?}
   LINK = POSE or {"pose":POSE,"sigma_mm","sigma_deg"} or {"pose":POSE,"covariance":6x6 (mm, rad)})";
+    m.fields = {{"",
+                 {"sensors", "reference_from_world", "id", "world_from_plate", "camera_from_plate",
+                  "plate_from_camera", "camera_from_laser", "working_point"},
+                 {"board"}},
+                {"sensors[]",
+                 {"id", "world_from_plate", "camera_from_plate", "plate_from_camera", "camera_from_laser",
+                  "working_point"},
+                 {"sensor", "size", "outline"}}};
     m.example = static_example;
     m.solve = solve_static;
     m.entries = "sensors";

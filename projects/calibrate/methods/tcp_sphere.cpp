@@ -114,8 +114,12 @@ CalibrationMethod tcp_sphere_method() {
     m.layout =
         R"({"radius_mm":R or null,"nominal_flange_from_sensor":POSE?,"robot":{"sigma_mm","sigma_deg"?}?,
    "observations":[{"id"?,"base_from_flange":POSE,"profile":[[x,z],..]},..]}   mm; z null: no return)";
+    m.fields = {{"", {"radius_mm", "nominal_flange_from_sensor", "observations", "robot"}},
+                {"observations[]", {"id", "base_from_flange", "profile"}},
+                robot_fields()};
     m.example = tcp_sphere_example;
     m.poses = {{"observations", kRobotPose}};
+    m.quantities = {{"observations[].base_from_flange"}, {"observations[].profile", QuantityKind::lengths}};
     m.solve = solve_tcp_sphere;
     m.convention_fits = tcp_sphere_conventions;
     m.entries = "observations";

@@ -21,12 +21,17 @@ namespace {
 
 using nlohmann::json;
 
+constexpr double kHeaviest = 1e6;  // weight of a sight, an ordinary one has 1
+
 Expected<BundleSight> parse_bundle_sight(const json& entry, std::size_t camera, const std::string& where) {
     BundleSight sight;
     sight.camera = camera;
     SEAM_TRY(auto object, json_vector3(entry, "object", where));
     SEAM_TRY(auto pixel, json_vector2(entry, "pixel", where));
     SEAM_TRY(auto weight, json_number_or(entry, "weight", 1, where));
+    if (!(weight >= 0 && weight <= kHeaviest))
+        return input_error("the weight must be 0 or positive", json_path(where, "weight"),
+                           "give 1 for an ordinary feature, 0 for none");
     SEAM_TRY(auto feature,
              json_string_or(entry, "feature",
                             fmt::format("({:g}, {:g}, {:g})", object.x(), object.y(), object.z()), where));
@@ -54,7 +59,7 @@ Expected<CalibrationSolution> solve_bundle(const json& data, const ExcludedIds& 
     BundleOptions options;
     options.exclude = exclude;
     if (data.contains("sigma_px")) {
-        SEAM_TRY(auto sigma, json_number(data, "sigma_px", ""));
+        SEAM_TRY(auto sigma, json_sigma(data, "sigma_px", ""));
         options.sigma_px = sigma;
     }
     if (data.contains("start")) {
@@ -141,6 +146,10 @@ CalibrationMethod bundle_method() {
         R"({"cameras":[{"id"?,"camera":{fx,fy,cx,cy,k1?..,width,height},"world_from_camera":LINK,
    "sights":[{"feature"?,"object":[x,y,z],"pixel":[u,v],"weight"?},..]},..],"sigma_px"?,"start":POSE?}
   LINK = POSE or {"pose":POSE,"sigma_mm","sigma_deg"} or {"pose":POSE,"covariance":6x6 (mm, rad)})";
+    m.fields = {{"", {"cameras", "sigma_px", "start"}, {"board"}},
+                {"cameras[]", {"id", "camera", "world_from_camera", "sights"}, {"size", "outline"}},
+                camera_fields("cameras[].camera"),
+                {"cameras[].sights[]", {"feature", "object", "pixel", "weight"}}};
     m.example = bundle_example;
     m.solve = solve_bundle;
     m.entries = "cameras";

@@ -156,6 +156,9 @@ CalibrationMethod camera_method() {
     m.usage = "images --board 9x6 --pitch-mm 25";
     m.layout =
         R"({"size":[W,H],"views":[{"id"?,"points":[{"object":[x,y,z],"pixel":[u,v]},..]},..]}   mm, px)";
+    m.fields = {{"", {"size", "views", "not_found"}, {"board"}},
+                {"views[]", {"id", "points"}, {"outline"}},
+                {"views[].points[]", {"object", "pixel"}}};
     m.example = camera_example;
     m.solve = solve_camera;
     m.data_of_images = camera_images;

@@ -61,6 +61,10 @@ CalibrationMethod laser_plane_method() {
    "pairs":[{"id"?,"pixel":[u,v],"laser":[x,z]},..],
    "robot":{"sigma_mm","sigma_deg"?,"lever_mm"?}?}   px, mm)";
     m.repeatability = true;
+    m.fields = {{"", {"camera", "pairs", "robot"}, {"size", "anchor"}},
+                camera_fields("camera"),
+                {"pairs[]", {"id", "pixel", "laser"}, {"flanks"}},
+                {"robot", {"sigma_mm", "sigma_deg", "lever_mm"}}};
     m.example = laser_plane_example;
     m.solve = solve_laser_plane;
     m.entries = "pairs";

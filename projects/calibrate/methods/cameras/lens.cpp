@@ -94,6 +94,7 @@ CalibrationMethod lens_method() {
     m.help = "Distortion from straight laser lines on a plane";
     m.usage = "lines.json";
     m.layout = R"({"size":[W,H],"lines":[[[u,v],..],..],"full":false?}   px)";
+    m.fields = {{"", {"size", "lines", "full"}}};
     m.example = lens_example;
     m.solve = solve_lens;
     m.entries = "lines";

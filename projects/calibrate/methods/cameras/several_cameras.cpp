@@ -31,11 +31,11 @@ Expected<UncertainPose> parse_link(const json& value, const std::string& where) 
             for (std::size_t k = 0; k < 6; ++k)
                 link.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = row[k];
         }
+        SEAM_OK(check_variances(link.covariance.diagonal(), path));
         return link;
     }
-    SEAM_TRY(auto mm, json_number_or(value, "sigma_mm", 0, where));
-    SEAM_TRY(auto deg, json_number_or(value, "sigma_deg", 0, where));
-    if (mm < 0 || deg < 0) return input_error("a sigma is negative", where);
+    SEAM_TRY(auto mm, json_sigma_or_exact(value, "sigma_mm", 0, where));
+    SEAM_TRY(auto deg, json_sigma_or_exact(value, "sigma_deg", 0, where));
     link.covariance.diagonal().head<3>().setConstant(mm * mm);
     link.covariance.diagonal().tail<3>().setConstant(std::pow(rad_from_deg(deg), 2));
     return link;

@@ -61,7 +61,7 @@ Expected<CalibrationSolution> solve_stereo(const json& data, const ExcludedIds& 
     StereoOptions options;
     options.exclude = exclude;
     if (data.contains("sigma_px")) {
-        SEAM_TRY(auto sigma, json_number(data, "sigma_px", ""));
+        SEAM_TRY(auto sigma, json_sigma(data, "sigma_px", ""));
         options.sigma_px = sigma;
     }
     SEAM_TRY(auto solved, intersect(first, second, sights, options));
@@ -123,7 +123,12 @@ CalibrationMethod stereo_method() {
         R"({"cameras":[CAM,CAM],"points":[{"id"?,"first":[u,v],"second":[u,v],"world":[x,y,z]?},..],"sigma_px"?}
   CAM = {"id"?,"camera":{fx,fy,cx,cy,k1?..,width,height},"world_from_camera":LINK}
   LINK = POSE or {"pose":POSE,"sigma_mm","sigma_deg"} or {"pose":POSE,"covariance":6x6 (mm, rad)})";
+    m.fields = {{"", {"cameras", "points", "sigma_px"}},
+                {"cameras[]", {"id", "camera", "world_from_camera"}},
+                camera_fields("cameras[].camera"),
+                {"points[]", {"id", "first", "second", "world"}}};
     m.example = stereo_example;
+    m.quantities = {{"cameras[].world_from_camera"}};
     m.solve = solve_stereo;
     m.entries = "points";
     m.use = AnswerUse::record;

@@ -238,8 +238,14 @@ CalibrationMethod stripe_camera_method() {
    "board":{"pixel":[[u,v],..],"index":[row*columns+column,..],"symmetry","detector"} or null,
    "stripe":[[u,v],..],"base_from_flange":POSE or null},..],
    "robot":{"sigma_mm","sigma_deg"?}?})";
+    m.fields = {{"", {"board", "frames", "robot"}},
+                {"board", {"columns", "rows", "pitch_mm", "pattern", "marker_mm", "dictionary", "legacy"}},
+                {"frames[]", {"id", "size", "scan", "board", "stripe", "base_from_flange"}},
+                {"frames[].board", {"pixel", "index", "symmetry", "detector"}},
+                robot_fields()};
     m.example = stripe_camera_example;
     m.poses = {{"frames", kRobotPose}};
+    m.quantities = {{"frames[].base_from_flange"}};
     m.solve = solve_stripe_camera;
     m.data_of_images = stripe_folder_data;
     m.convention_fits = stripe_camera_conventions;

@@ -43,10 +43,11 @@ Expected<StudyTable> header_of(std::string_view line, const std::string& at) {
             if (table.columns[w] >= 0)
                 return input_error(Text("the column {} is named twice", kStudyColumns[w]), at);
             table.columns[w] = static_cast<int>(c);
-            if (name.unit.empty() || w < kValue) continue;
-            const auto mm = mm_of_unit(name.unit);
+            const std::string& unit = name.unit.empty() ? name.unknown : name.unit;
+            if (unit.empty() || w < kValue) continue;
+            const auto mm = mm_of_unit(unit);
             if (!mm)
-                return input_error(Text("\"{}\" is no unit of length", csv::shown(name.unit)), at,
+                return input_error(Text("\"{}\" is no unit of length", csv::shown(unit)), at,
                                    "give millimetres");
             table.mm[w] = *mm;
         }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "devices/exchange/files.h"
@@ -16,6 +17,19 @@ namespace seamwright {
 namespace {
 
 constexpr double kMostAngle_deg = 720;
+constexpr double kTurnWithin = 2e-3;  // of a half or a quarter turn, rad
+
+// A sensor that looks straight ahead has angles of a few degrees: only a half or a quarter turn in radian is surely one.
+bool of_radian(const std::vector<WrittenRow>& rows) {
+    bool turned = false;
+    for (const WrittenRow& row : rows)
+        for (std::size_t i = 3; i < 6; ++i) {
+            const double angle = std::abs(row.numbers[i]);
+            if (angle > kPi + kTurnWithin) return false;
+            turned = turned || std::abs(angle - kPi) < kTurnWithin || std::abs(angle - kPi / 2) < kTurnWithin;
+        }
+    return turned;
+}
 
 // Poses of one notation, each with its place among all.
 struct Alike {
@@ -31,7 +45,7 @@ class JsonPoses {
     Expected<void> add(const nlohmann::json& json, const std::string& at) {
         SEAM_TRY(const auto written, written_pose(json, at));
         if (json.contains("matrix") && json.contains("abc")) return add_own(json, at);
-        PoseNotation notation{"matrix", "", kNoAngles};
+        WrittenNotation notation{"matrix", "", kNoAngles};
         switch (written.as_given.rotation) {
             case RotationReading::matrix:
                 break;
@@ -71,6 +85,8 @@ class JsonPoses {
         std::vector<Pose> all(count_, Pose::Identity());
         for (auto& [notation, alike] : alike_) {
             PoseForm& form = alike.form;
+            if (form.convention == "kuka-abc" && form.rad == 0 && !of_radian(alike.rows))
+                form.rad = kPi / 180;
             SEAM_OK(settle_units(form, alike.rows, where));
             for (std::size_t i = 0; i < alike.rows.size(); ++i) {
                 const WrittenRow& row = alike.rows[i];

@@ -1,6 +1,7 @@
 #pragma once
 // Poses as JSON of other hands: POSE of pose_json.h, whose keys say the notation and not the units. Lengths are in millimetres and
-// abc in degrees unless the person says another unit, or the numbers look like one (pose_table.h); only what pose_json() itself
+// abc in degrees unless the person says another unit, or the numbers look like one (lengths as in pose_table.h; angles with a half or a quarter turn of radian among them, none above);
+// only what pose_json() itself
 // writes (xyz, abc and matrix) is millimetres and degrees whatever the numbers look like.
 
 #include <filesystem>

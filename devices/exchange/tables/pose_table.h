@@ -57,7 +57,7 @@ struct PoseNames {
 };
 // What a file's own notation says, whatever the person does. Empty: nothing.
 inline constexpr const char* kNoAngles = "none";
-struct PoseNotation {
+struct WrittenNotation {
     std::string convention;  // of kPoseConventions
     std::string unit;        // of lengths
     std::string angle;       // "deg" | "rad" | kNoAngles
@@ -66,7 +66,7 @@ struct PoseTable {
     std::vector<TablePose> poses;  // of the flange in the robot's base
     std::vector<PoseNames> names;
     std::string understood;
-    PoseNotation says;           // of a robot program
+    WrittenNotation says;           // of a robot program
     bool of_own_frames = false;  // a program's, whose tool or frame is not zero, or not known
 };
 

@@ -1,7 +1,10 @@
 #include "projects/calibrate/methods/method.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "core/calibration/board/board.h"
 #include "devices/exchange/json_fields.h"
@@ -156,13 +159,50 @@ DataFields camera_fields(std::string at) {
 
 namespace {
 
+constexpr const char* kPoseConvention =
+    "pose_convention";  // of a method without poses it would act on nothing
+constexpr std::size_t kShortestBeginning = 4, kShortWord = 5;  // letters
+
+// In small letters, without what joins words.
+std::string plain(std::string_view name) {
+    std::string letters;
+    for (const char c : name)
+        if (std::isalnum(static_cast<unsigned char>(c)))
+            letters += char(std::tolower(static_cast<unsigned char>(c)));
+    return letters;
+}
+
+// How many letters are to be changed, put in or left out (Levenshtein 1966).
+std::size_t letters_apart(const std::string& a, const std::string& b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t corner = row[0]++;
+        for (std::size_t j = 0; j < b.size(); ++j)
+            corner = std::exchange(row[j + 1],
+                                   std::min({row[j] + 1, row[j + 1] + 1, corner + (a[i] == b[j] ? 0 : 1)}));
+    }
+    return row.back();
+}
+
+// One is the beginning of the other, or a letter or two are wrong.
+bool resembles(const std::string& key, std::string_view known) {
+    const std::string a = plain(key), b = plain(known);
+    const std::size_t shorter = std::min(a.size(), b.size());
+    if (shorter >= kShortestBeginning && a.compare(0, shorter, b, 0, shorter) == 0) return true;
+    return letters_apart(a, b) <= (shorter < kShortWord ? shorter / 2 : 2);
+}
+
 Expected<void> check_object(const json& object, const DataFields& fields, const std::string& where) {
     const auto in = [](const std::vector<std::string_view>& list, const std::string& key) {
         return std::find(list.begin(), list.end(), key) != list.end();
     };
-    for (const auto& [key, value] : object.items())
-        if (!in(fields.known, key) && !in(fields.written, key))
+    for (const auto& [key, value] : object.items()) {
+        if (in(fields.known, key) || in(fields.written, key)) continue;
+        const auto meant = [&key = key](std::string_view known) { return resembles(key, known); };
+        if (key == kPoseConvention || std::any_of(fields.known.begin(), fields.known.end(), meant))
             return only_fields(json{{key, nullptr}}, fields.known, where);
+    }
     return {};
 }
 
@@ -188,7 +228,7 @@ Expected<void> check_at(const json& value, std::string_view at, const DataFields
 
 Expected<void> check_fields(const CalibrationMethod& method, const json& data) {
     for (DataFields fields : method.fields) {
-        if (fields.at.empty() && !method.poses.empty()) fields.known.emplace_back("pose_convention");
+        if (fields.at.empty() && !method.poses.empty()) fields.known.emplace_back(kPoseConvention);
         SEAM_OK(check_at(data, fields.at, fields, ""));
     }
     return {};

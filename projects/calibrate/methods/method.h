@@ -172,8 +172,9 @@ std::vector<MethodSetting> board_settings();
 DataFields robot_fields();
 // CAMERA at this place
 DataFields camera_fields(std::string at);
-// Error (input): a field that the method does not know, which would silently mean its default otherwise. What is no object or
-// no list where one belongs is left to the method.
+// Error (input): a field that the method does not know and that looks like a known one misspelt, which would silently mean its
+// default otherwise. Whatever else stands beside (a remark, where the data come from) is passed over; what is no object or no list where
+// one belongs is left to the method.
 Expected<void> check_fields(const CalibrationMethod& method, const nlohmann::json& data);
 
 }  // namespace seamwright

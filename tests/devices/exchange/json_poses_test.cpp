@@ -35,6 +35,9 @@ TEST(JsonPoses, UnitsAreAskedForAndAct) {
     expect_refused(kMetres, {}, "--pose-unit");
     expect_refused(kRadian, {}, "--pose-angle");
     expect_pose(kMetres, {"", "m", "", {}, {}});
+    // A few degrees are no radian.
+    EXPECT_TRUE(parse_json_poses(R"([{"xyz":[800,-50,600],"abc":[0.5,-3,1.2]}])", "poses", {}));
+    EXPECT_TRUE(parse_json_poses(R"([{"xyz":[800,-50,600],"abc":[0,0,3]}])", "poses", {}));
     expect_pose(kRadian, {"kuka-abc", "mm", "rad", {}, {}});
     // What the program itself writes is not asked, wherever it stands.
     const Pose near = make_pose(rotation_from_kuka({1, 2, 3}), {4, 5, 6});

@@ -54,7 +54,7 @@ TEST(StudyCsv, HostileTexts) {
         {"part,run,value,value\nA,1,1,1\n", "named twice"},
         {head + "A,1,1,nan,\n", "value is missing"},
         {head + "A,1,1,,\n", "value is missing"},
-        {head + "A,1,1,inf,\n", "no number"},
+        {head + "A,1,1,inf,\n", "is missing"},
         {head + "A,1,1,1e999,\n", "no number"},
         {head + "A,1,1,2e6,\n", "beyond 1 km"},
         {head + "A,1,1,0x10,\n", "no number"},
@@ -68,7 +68,7 @@ TEST(StudyCsv, HostileTexts) {
         {head + "A,1,1,0,5,0,5\n", "decimal points"},
         {"part;run;value\nA;1;0,5\nA;2;0.5\n", "decimal comma"},
         {"part,run,value\nA,1,\"0,5\"\n", "decimal points"},
-        {"part,run,value [bar]\nA,1,1\n", "no column value"},
+        {"part,run,value [bar]\nA,1,1\n", "no unit of length"},
         {"part,run,value [deg]\nA,1,1\n", "no unit of length"},
         {std::string("part,run,value\nA,1,\0\n", 21), "no number"},
     };

@@ -28,18 +28,31 @@ class EveryMethodsFields : public testing::TestWithParam<std::string> {
     const CalibrationMethod& method_ = *find_method(GetParam());
 };
 
-TEST_P(EveryMethodsFields, AFieldThatNoObjectOfTheDataHasIsRefused) {
+TEST_P(EveryMethodsFields, AMisspeltFieldOfAnyObjectIsRefused) {
     std::vector<std::string> pointers;
     objects_of(method_.example(), "", pointers);
     for (const std::string& at : pointers) {
         json data = method_.example();
-        data[json::json_pointer(at)]["weigth_mm"] = 1;
+        json& object = data[json::json_pointer(at)];
+        const std::string misspelt = object.begin().key() + "s";
+        object[misspelt] = 1;
         const auto refused = solve_calibration(method_, data, {});
         ASSERT_FALSE(refused) << at;
         EXPECT_EQ(refused.error().kind, ErrorKind::input);
-        EXPECT_THAT(refused.error().sentence(), HasSubstr("weigth_mm")) << at;
+        EXPECT_THAT(refused.error().sentence(), HasSubstr(misspelt)) << at;
         EXPECT_THAT(refused.error().sentence(), HasSubstr("is not a known field")) << at;
     }
+}
+
+TEST_P(EveryMethodsFields, ARemarkBesideTheDataIsPassedOver) {
+    const auto check = [&](const json& data) {
+        const auto fields = check_fields(method_, data);
+        return fields ? std::string() : fields.error().sentence();
+    };
+    json data = method_.example();
+    EXPECT_EQ(check(data), "");
+    for (const char* remark : {"comment", "note", "made_by", "date", "truth"}) data[remark] = "as measured";
+    EXPECT_EQ(check(data), "");
 }
 
 // What the layout says can be written.

@@ -71,7 +71,8 @@ Expected<PoseForm> pose_form(const PoseLayout& layout) {
     return form;
 }
 
-Expected<void> check_said(const PoseLayout& layout, const WrittenNotation& notation, const std::string& where) {
+Expected<void> check_said(const PoseLayout& layout, const WrittenNotation& notation,
+                          const std::string& where) {
     using Said = std::tuple<const char*, const std::string&, const std::string&>;
     for (const auto& [option, said, is] : {Said{"--pose-convention", layout.convention, notation.convention},
                                            Said{"--pose-unit", layout.unit, notation.unit},

@@ -24,7 +24,8 @@ struct PoseForm {
 // What the person says. Error (usage): words that are none.
 Expected<PoseForm> pose_form(const PoseLayout& layout);
 // Error (input), by the option's name: the person says another than the file's notation, so that it could not act.
-Expected<void> check_said(const PoseLayout& layout, const WrittenNotation& notation, const std::string& where);
+Expected<void> check_said(const PoseLayout& layout, const WrittenNotation& notation,
+                          const std::string& where);
 // Error (input): rows of `width` numbers are no pose of that form, or several.
 Expected<void> check_width(PoseForm& form, std::size_t width, const std::string& where);
 // Units that nobody named: usual ones. Error (input): the numbers speak against them.

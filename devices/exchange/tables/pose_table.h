@@ -66,7 +66,7 @@ struct PoseTable {
     std::vector<TablePose> poses;  // of the flange in the robot's base
     std::vector<PoseNames> names;
     std::string understood;
-    WrittenNotation says;           // of a robot program
+    WrittenNotation says;        // of a robot program
     bool of_own_frames = false;  // a program's, whose tool or frame is not zero, or not known
 };
 

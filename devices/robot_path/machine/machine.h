@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "devices/robot_path/robot_path.h"
 #include "devices/exchange/words/tokens.h"
+#include "devices/robot_path/robot_path.h"
 
 namespace seamwright::program_path {
 

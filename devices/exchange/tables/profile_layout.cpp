@@ -284,7 +284,7 @@ std::string unknown_unit(std::string_view title, std::size_t from) {
     if (title[from] == '_') return word == "px" || word == "pixel" ? std::string(word) : std::string();
     const char end = title[from] == '[' ? ']' : ')';
     const auto to = word.find(end);
-    if (to == word.npos || word.find_first_not_of(" ", to + 1) != word.npos) return {};
+    if (to == word.npos || word.find_first_not_of(' ', to + 1) != word.npos) return {};
     word = csv::blanks_off(word.substr(0, to));
     const bool letters =
         std::all_of(word.begin(), word.end(), [](unsigned char c) { return c < 0x80 && std::isalpha(c); });

@@ -193,7 +193,8 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
             break;
     }
     return ChosenEnd{chosen->first, chosen->first + chosen->count - 1, ends.at_last(*chosen),
-                     ends.at_last(*chosen) ? chosen->mixed_after : chosen->mixed_before};
+                     ends.at_last(*chosen) ? chosen->mixed_after : chosen->mixed_before,
+                     ends.how(*chosen) == ContourSheetEnd::covered};
 }
 
 }  // namespace seamwright

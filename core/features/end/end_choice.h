@@ -26,7 +26,8 @@ struct EndRule {
 struct ChosenEnd {
     int first, last;  // of the sheet's points
     bool at_last;
-    int mixed;  // line of the farthest point that stands in the step behind it (ContourSheet); -1: none
+    int mixed;     // line of the farthest point that stands in the step behind it (ContourSheet); -1: none
+    bool covered;  // beside a higher sheet
 };
 
 // nullopt with status, message and rivals set in `feature`:

@@ -46,9 +46,10 @@ EndCurve straight(const LineFit& line) {
 }  // namespace
 
 std::span<const EndCurve> EndFit::fit(std::span<const double> x, std::span<const double> z,
-                                      const ProfileNoise& noise) {
+                                      const ProfileNoise& noise, bool covered) {
     x_ = x;
     z_ = z;
+    covered_ = covered;
     workspace_.noise = noise;
     curves_.clear();
     const LineFit line = fit_line(x, z, workspace_);
@@ -87,7 +88,9 @@ bool EndFit::try_curves(int fewest_used) {
                 const Eigen::Vector2d from = 0.5 * (point(count - 1) + point(std::min(count, x_.size() - 1)));
                 curve.centre += curve.direction * curve.direction.dot(from - curve.centre);
             }
-            if (least_squares(curve, curvature_weight)) curves_.push_back(curve);
+            if (!least_squares(curve, curvature_weight)) continue;
+            const bool turns_up = curve.curvature * curve.normal().y() > 0;
+            if (!covered_ || !turns_up) curves_.push_back(curve);
         }
         if (curves_.size() < 2) return false;
         weigh();

@@ -16,6 +16,7 @@
 // Points count within 3.5 robust sigma of the likeliest curve (median size of the residuals, not less than the profile's noise;
 // iterated). Where that would leave less than three quarters of the robust line's points, that line is the only curve: without an
 // arc it takes the rounded end, or the flat before it, for outliers and says confidently where neither of them is.
+// Beside a higher sheet no arc turns up: there the last points stand in light that fell on both.
 //
 // Noise model: equal, across the contour; neighbours may share it (contour_noise.h). Units mm, rad.
 // Degenerate: fewer than 6 points, all of them in one place, or turned by more than a half circle, know no arc.
@@ -87,9 +88,9 @@ struct EndCurve {
 class EndFit {
   public:
     // The curves through the points, which come from the end inwards; the likeliest first, weights of sum 1. Empty: they form
-    // no line. `noise`: of the profile. Valid until the next fit.
+    // no line. `noise`: of the profile. `covered`: beside a sheet that is higher, towards +z. Valid until the next fit.
     std::span<const EndCurve> fit(std::span<const double> x, std::span<const double> z,
-                                  const ProfileNoise& noise);
+                                  const ProfileNoise& noise, bool covered);
 
   private:
     Eigen::Vector2d point(std::size_t i) const { return {x_[i], z_[i]}; }
@@ -103,6 +104,7 @@ class EndFit {
     double median_residual(const EndCurve& curve);
 
     std::span<const double> x_, z_;
+    bool covered_ = false;
     std::vector<double> scratch_;
     std::vector<std::uint8_t> keep_;
     std::vector<EndCurve> curves_;

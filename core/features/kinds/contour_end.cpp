@@ -136,7 +136,7 @@ class ContourEnd final : public FeatureFinder {
         const auto chosen = choose_end(sheets_, rule_, feature);
         if (!chosen) return feature;
         const bool at_last = chosen->at_last;
-        fit_end(chosen->first, chosen->last, at_last);
+        fit_end(*chosen);
         if (curves_.empty()) {
             feature.message = "the points before the end do not form a line";
             return feature;
@@ -200,16 +200,16 @@ class ContourEnd final : public FeatureFinder {
 
     // Through the points within fit_length_ of the end; through fewer where those are other than a line or an arc (a hem and
     // the flat before it) and these say better where the last point is. An arc is not given up for a line.
-    void fit_end(int first, int last, bool at_last) const {
+    void fit_end(const ChosenEnd& end) const {
         const double fewest = kEndFewestShort * sheets_.noise().apart();
         double best_length = fit_length_, least = 0, tried = fit_length_;
         curves_.clear();
         for (const double share : kEndShares) {
             const double length = share * fit_length_;
-            take_end(first, last, at_last, length);
+            take_end(end, length);
             if (share < 1 && double(fit_x_.size()) < fewest) break;
             tried = length;
-            const std::span<const EndCurve> fit = fit_.fit(fit_x_, fit_z_, sheets_.noise());
+            const std::span<const EndCurve> fit = fit_.fit(fit_x_, fit_z_, sheets_.noise(), end.covered);
             if (fit.empty()) break;
             const EndCurve& curve = fit.front();
             const double s = curve.along(point(0));
@@ -224,8 +224,7 @@ class ContourEnd final : public FeatureFinder {
             }
             if (!(misfit * misfit > curve.variance_at(s))) break;
         }
-        if (best_length != tried || double(fit_x_.size()) < fewest)
-            take_end(first, last, at_last, best_length);
+        if (best_length != tried || double(fit_x_.size()) < fewest) take_end(end, best_length);
     }
 
     // Where the curve ends, s: half a `step` beyond the last point, all along it; `measured` of the step for an interpolation
@@ -242,12 +241,12 @@ class ContourEnd final : public FeatureFinder {
     }
 
     // The points within `length` of the end, from the end inwards.
-    void take_end(int first, int last, bool at_last, double length) const {
-        const int step = at_last ? -1 : 1;
-        const int end = at_last ? last : first;
+    void take_end(const ChosenEnd& chosen, double length) const {
+        const int step = chosen.at_last ? -1 : 1;
+        const int end = chosen.at_last ? chosen.last : chosen.first;
         fit_x_.clear();
         fit_z_.clear();
-        for (int i = end; i >= first && i <= last; i += step) {
+        for (int i = end; i >= chosen.first && i <= chosen.last; i += step) {
             const double d = std::hypot(sheets_.x()[i] - sheets_.x()[end], sheets_.z()[i] - sheets_.z()[end]);
             if (d > length && fit_x_.size() >= 4) break;
             fit_x_.push_back(sheets_.x()[i]);

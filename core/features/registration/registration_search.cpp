@@ -61,14 +61,36 @@ CentredPose moved_along(const CentredPose& pose, const Eigen::Vector3d& body_twi
             pose.phi + turn};
 }
 
+// The points that have neighbours.
+void SceneContour::take_solid(const std::vector<double>& px, const std::vector<double>& pz) {
+    solid_x_.clear();
+    solid_z_.clear();
+    const double near = 6 * pitch.distance;
+    const int count = static_cast<int>(px.size());
+    for (int i = 0; i < count; ++i) {
+        int support = 0;
+        for (int k = std::max(0, i - 3); k <= std::min(count - 1, i + 3); ++k) {
+            const double dx = px[k] - px[i], dz = pz[k] - pz[i];
+            if (k != i && dx * dx + dz * dz < near * near) ++support;
+        }
+        if (support < 2) continue;
+        solid_x_.push_back(px[i]);
+        solid_z_.push_back(pz[i]);
+    }
+}
+
 void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin, const Eigen::Vector2d& centre,
                           double reach) {
     x.clear();
     z.clear();
+    all_x_.clear();
+    all_z_.clear();
     const bool marked = scene.filtered();
     for (std::size_t i = 0; i < scene.size() && i < scene.z_mm.size(); ++i) {
         const double px = scene.x_mm[i] - origin.x(), pz = scene.z_mm[i] - origin.y();
         if (!std::isfinite(px) || !std::isfinite(pz) || (marked && scene.segment[i] == kOutlier)) continue;
+        all_x_.push_back(px);
+        all_z_.push_back(pz);
         if (std::abs(px - centre.x()) > reach || std::abs(pz - centre.y()) > reach) continue;
         x.push_back(px);
         z.push_back(pz);
@@ -78,7 +100,8 @@ void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin, c
     pitch = contour_pitch(x, z, scratch_);
     // In sensor order a neighbour is near. In a shuffled set it is anywhere.
     const auto [lo, hi] = std::minmax_element(x.begin(), x.end());
-    if (n > 20 && pitch.along_x > 0.1 * (*hi - *lo)) {
+    const bool shuffled = n > 20 && pitch.along_x > 0.1 * (*hi - *lo);
+    if (shuffled) {
         sorted_.clear();
         for (std::size_t i = 0; i < n; ++i) sorted_.push_back({x[i], z[i], 0});
         std::sort(sorted_.begin(), sorted_.end());
@@ -89,23 +112,17 @@ void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin, c
         pitch = contour_pitch(x, z, scratch_);
     }
     if (order_faces(pitch, x, z)) pitch = contour_pitch(x, z, scratch_);
-    solid_x_.clear();
-    solid_z_.clear();
     mixed_.clear();
-    const double near = 6 * pitch.distance;
-    const int count = static_cast<int>(n);
-    for (int i = 0; i < count; ++i) {
-        int support = 0;
-        for (int k = std::max(0, i - 3); k <= std::min(count - 1, i + 3); ++k) {
-            const double dx = x[k] - x[i], dz = z[k] - z[i];
-            if (k != i && dx * dx + dz * dz < near * near) ++support;
-        }
-        if (support < 2) continue;
-        solid_x_.push_back(x[i]);
-        solid_z_.push_back(z[i]);
+    // Noise that many neighbours share shows in the whole profile: a few bends within reach would pass for it.
+    ProfileNoise whole;
+    if (!shuffled) {
+        take_solid(all_x_, all_z_);
+        whole = profile_noise(solid_x_, solid_z_, scratch_, SharedOver::many);
     }
-    const ProfileNoise noise = profile_noise(solid_x_, solid_z_, scratch_, SharedOver::many);
+    take_solid(x, z);
+    ProfileNoise noise = profile_noise(solid_x_, solid_z_, scratch_);
     sigma_mm = noise.point_mm;
+    if (whole.apart() > noise.apart()) noise = whole;
     pitch.shared = noise.apart();
     if (pitch.alike() > 1) sigma_mm = std::max(sigma_mm, noise.alone_mm);
     leave_out_mixed();

@@ -64,8 +64,10 @@ struct SceneContour {
   private:
     void add_polygon_edge(double x0, double z0, double x1, double z1);
     std::vector<double> scratch_, run_x_, run_z_;
-    void leave_out_mixed();                  // points that stand in a step (ContourPitch::mixed)
-    std::vector<double> solid_x_, solid_z_;  // the points that have neighbours
+    void take_solid(const std::vector<double>& px, const std::vector<double>& pz);
+    void leave_out_mixed();              // points that stand in a step (ContourPitch::mixed)
+    std::vector<double> all_x_, all_z_;  // of the whole profile
+    std::vector<double> solid_x_, solid_z_;
     std::vector<std::array<double, 2>> mixed_;
     std::vector<int> kept_;
     std::vector<std::array<double, 3>> sorted_;

@@ -349,6 +349,26 @@ TEST(ContourEndLaws, WhatTheFilterRejectedBeyondTheEndMakesItUnsure) {
     EXPECT_NEAR(std::sqrt(right_end()->find(p).covariance_mm2(0, 0)), sharp, 1e-9);
 }
 
+// Where a sheet runs up to a higher one, the light of that edge falls on both: the last point stands a little higher.
+TEST(ContourEndLaws, BesideAHigherSheetALastPointInBetweenIsNoArc) {
+    const auto finder =
+        make_feature_finder({"contour-end", {{"side", 1}, {"segment", 1}}, {}, Vector2d::Zero()}).value();
+    Random random(5);
+    constexpr double kNoise_mm = 0.02;
+    std::normal_distribution<double> noise(0, kNoise_mm);
+    for (int i = 0; i < 300; ++i) {
+        Profile p;
+        for (int k = 0; k <= 160; ++k) {
+            p.x_mm.push_back(0.157 * k);
+            p.z_mm.push_back((k < 100 ? 0 : 0.8) + noise(random));
+        }
+        p.z_mm[99] = 0.05 + 0.25 * phase(random);
+        const Feature f = finder->find(p);
+        ASSERT_EQ(f.status, FeatureStatus::ok) << f.message;
+        EXPECT_LT(std::abs(f.point_mm.y()), 6 * kNoise_mm) << i;
+    }
+}
+
 TEST(ContourEndLaws, MissingReturnsBeforeTheEndMakeItUnsure) {
     Profile p;
     for (int i = 0; i < 100; ++i) {

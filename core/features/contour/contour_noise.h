@@ -17,6 +17,9 @@ struct ContourNoise {
     double point_mm = 0;
     // Of the points that were measured, in lines of the grid; 0: nothing says that they were others than these.
     double measured_apart = 0;
+    // How surely straight lines were drawn between these points, 0 to 1, rather than means taken of neighbours: behind what was
+    // measured last an interpolation has nothing, a mean still has its lines.
+    double drawn = 0;
     double rounding_mm = 0;  // the step of the heights (z_rounding_mm)
     // The variance of rounded heights that the residuals of a fit do not show: on a level sheet all points are rounded alike.
     double shared_rounding_mm2(double rms_mm) const;

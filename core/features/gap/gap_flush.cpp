@@ -153,15 +153,22 @@ void GapFlushGauge::measure_edge(const GapPart& part, const Eigen::Vector2d& u, 
     const double lost_square = lost * (1 + lost) / ((1 - lost) * (1 - lost));
     // The edge stands in the middle of a ramp that smoothing has drawn.
     const double ramp = part.ramp ? (part.smoothed_lines - 1) * plain : 0;
+    // Points that were measured farther apart and laid on the lines of a grid: behind the last line on the surface it went on
+    // to the last such point, and from there by up to a step of them.
+    const double a = outermost == 0 && !part.ramp ? std::max(advance, kSeenEdge * plain) : 0;
+    const double measured = part.drawn_lines * a;
+    const double whether = part.drawn_lines * (sides_.noise().measured_apart - part.drawn_lines) * a * a / 4;
     // It has drawn a flank that is seen out over as many lines.
     if (part.smoothed_lines > 1)
         for (const std::size_t i : {outermost, outermost + 1})
             if (i > 0 && i < part.z.size())
                 flank = std::max(flank,
                                  0.5 * part.smoothed_lines * std::abs((part.z[i] - part.z[i - 1]) * u.y()));
-    side.edge = Eigen::Vector2d(part.x[outermost], part.z[outermost]) + (0.5 * (advance + ramp) + unseen) * u;
-    side.edge_variance = (spread * spread + ramp * ramp) / 12 + lost_square * plain * plain +
-                         std::pow(0.5 * part.unsure_lines * plain, 2) + flank * flank + noise * noise;
+    side.edge = Eigen::Vector2d(part.x[outermost], part.z[outermost]) +
+                (0.5 * (advance + ramp + measured) + unseen) * u;
+    side.edge_variance = (spread * spread + ramp * ramp + measured * measured) / 12 + std::max(whether, 0.0) +
+                         lost_square * plain * plain + std::pow(0.5 * part.unsure_lines * plain, 2) +
+                         flank * flank + noise * noise;
 }
 
 GapFlush GapFlushGauge::measure(const Profile& profile) {

@@ -20,6 +20,9 @@
 // Noise model: across each surface, from each line's residuals, their likeness and the profile's noise
 // (contour_noise.h); an edge is spread evenly over that advance a along u, at least over a third of the pitch (variance
 // a^2 / 12 each; a sensor's noise is in z and moves it by its part along u as well), and known to a point's noise across.
+// On a grid whose points were measured f lines apart and straight lines drawn between
+// them (contour_noise.h) it lies f a / 2 farther out, with f^2 a^2 / 12 more; d f a / 2 and d (1 - d) f^2 a^2 / 4 beside it where
+// that is only d likely.
 // Where a share of a surface's lines is lost, the last ones may be: q (1 + q) / (1 - q)^2 pitches^2 more, q the share
 // beyond 0.01, which an ellipse of 95 % leaves out.
 // Behind the edge a sensor that means m lines has drawn the step over m - 1 of them: the edge is

@@ -32,10 +32,12 @@ constexpr double kSteepSmoothed = 1.4;  // of a sensor that smooths, or may: a r
 constexpr double kSteepNoise = 6;       // sigma
 constexpr int kMostSteep = 40;          // points over which steepness is judged
 constexpr int kFewEndPoints = 4;
-constexpr double kSmooths = 1.5;                       // lines that share their noise
-constexpr double kRampStep = 0.5;                      // of the steepest: such a step belongs to the ramp
-constexpr double kWholeStep = 0.7;                     // of what falls about it, between two lines
-constexpr double kByChance = 1e-3;                     // holes of missing returns in a profile
+constexpr double kSmooths = 1.5;            // lines that share their noise
+constexpr double kRampStep = 0.5;           // of the steepest: such a step belongs to the ramp
+constexpr double kInterpolatedStep = 0.15;  // the same where straight lines were drawn between points
+constexpr double kWholly = 0.9;             // more, and no line is drawn across the step
+constexpr double kWholeStep = 0.7;          // of what falls about it, between two lines
+constexpr double kByChance = 1e-3;          // holes of missing returns in a profile
 constexpr double kLeastDrawn = 4, kDrawnBeyond = 1.5;  // lines of a step; of those that likeness explains
 constexpr double kDrawnAlike = 0.25;
 constexpr double kSlopeNoise = 3;  // sigma in the height over which a slope is taken
@@ -273,13 +275,16 @@ double GapSides::noise_of(int first, int last) const {
     if (scratch_.empty()) return 0;
     const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
     std::nth_element(scratch_.begin(), middle, scratch_.end());
-    return kMadToSigma * *middle / std::sqrt(6.0);
+    const double beside = kMadToSigma * *middle / std::sqrt(6.0);
+    // Interpolated neighbours hide it.
+    return is_drawn() ? std::max(beside, noise_.point_mm) : beside;
 }
 
 // The last point of the part that goes on from `from`; `stop` is no more of it. Of a sensor that smooths the last points
 // stand on the ramp that it makes of the step behind the edge (or of a face): they are given back, as many as it makes.
 int GapSides::walked(int from, int step, int stop, double noise, GapPart& part) const {
-    const int w = std::clamp(static_cast<int>(std::ceil(kSlopeNoise * noise / pitch_)), 1, 40);
+    const int w =
+        std::clamp(static_cast<int>(std::ceil(std::max(kSlopeNoise * noise / pitch_, drawn_lines()))), 1, 40);
     const double steeper = kMostDrop * w / (std::sqrt(w + 1.0) - 1);
     trail_.clear();
     // A slope that a point beside the contour turns over lets the walk end at once.
@@ -367,9 +372,10 @@ int GapSides::walked(int from, int step, int stop, double noise, GapPart& part) 
             std::max(steepest, std::abs(z_[before(k)] - z_[before(k + 1)]) / lines(before(k), before(k + 1)));
     if (ground && steepest > kSteep * pitch_ + gate && steepest > kWholeStep * std::abs(z_[foot] - z_[top])) {
         part.ramp = false;
+        if (steepest > kWholly * std::abs(z_[foot] - z_[top])) part.drawn_lines = 0;
         return edge;
     }
-    const double least = std::max(kSteep * pitch_, kRampStep * steepest);
+    const double least = std::max(kSteep * pitch_, (is_drawn() ? kInterpolatedStep : kRampStep) * steepest);
     for (int k = 1; k < ramp_lines && trail_.size() > 1 && trail_.back() != from; ++k) {
         const int last = trail_.back(), inner = trail_[trail_.size() - 2];
         if (!steep(inner, last, least)) break;
@@ -487,7 +493,10 @@ GapSides::Found GapSides::find(const Profile& profile, const FeatureWindow& wind
     part_after.noise_mm = noise_after;
     part_before.lost_share = part_after.lost_share = lost_share(before, {after_end, after.last});
     part_before.face = part_after.face = false;
-    part_before.smoothed_lines = part_after.smoothed_lines = smooths() ? noise_.apart() : 1;
+    // Between two measured points a line is drawn of the whole step.
+    const double smoothed = is_drawn() ? 1 + noise_.measured_apart : noise_.apart();
+    part_before.smoothed_lines = part_after.smoothed_lines = smooths() ? smoothed : 1;
+    part_before.drawn_lines = part_after.drawn_lines = smooths() ? drawn_lines() : 0;
     int last = walked(before.last, 1, cut + 1, noise_before, part_before);
     int first = walked(after_end, -1, after_stop, noise_after, part_after);
     const auto take = [&](GapPart& part, int i) {

@@ -48,6 +48,7 @@ struct GapPart {
     double noise_mm = 0;
     double lost_share = 0;      // of its lines, without return or with a spark
     double smoothed_lines = 1;  // that the sensor means
+    double drawn_lines = 0;     // between what was measured, of a grid; 0: its points were
     bool face = false;          // that of the gap may be seen: order and spacing along x tell nothing of it
     bool ramp = false;          // of them, drawn of the step behind the edge, follows the last point
     double unsure_lines =
@@ -103,6 +104,8 @@ class GapSides {
     int flat_end(int edge, int to_gap, int inmost) const;
     void take_drawn_steps(const Core& before, const Core& after, int& last, int& first);
     bool smooths() const;
+    double drawn_lines() const { return noise_.drawn * noise_.measured_apart; }
+    bool is_drawn() const { return noise_.drawn > 0.5; }
 
     FeaturePoints points_;
     std::vector<double> x_, z_;  // all that came back in the window

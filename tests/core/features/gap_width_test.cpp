@@ -59,6 +59,10 @@ void turn(Outline& o, double angle) {
 struct Tally {
     int asked = 0, ok = 0, inside = 0, far = 0;
     double error = 0, sigma = 0;
+    void add(const Tally& t) {
+        asked += t.asked, ok += t.ok, inside += t.inside, far += t.far;
+        error += t.error, sigma += t.sigma;
+    }
 };
 
 struct Sensing {
@@ -66,6 +70,7 @@ struct Sensing {
     double missing = 0.01;  // share of the returns
     int mean = 1;           // lines that the sensor means
     double ground_mm = 0;   // depth at which the ground is seen in the gap; 0: it is dark
+    double apart = 0;       // pitches at which points are measured, to be laid on a grid; 0: on its lines
 };
 
 // What a sensor makes of it that means so many lines, of those with a return.
@@ -80,6 +85,19 @@ void smooth(std::vector<double>& z, int lines) {
             if (!std::isnan(raw[k])) sum += raw[k], ++count;
         z[i] = sum / count;
     }
+}
+
+// The lines of an even grid between measured neighbours, by straight lines.
+Profile laid_on_grid(const Profile& measured, double step_mm, double pitch_mm) {
+    Profile p;
+    std::size_t next = 1;
+    for (double x = measured.x_mm.front(); x < measured.x_mm.back(); x += pitch_mm) {
+        while (next + 1 < measured.size() && measured.x_mm[next] < x) ++next;
+        const double t = (x - measured.x_mm[next - 1]) / step_mm;
+        p.x_mm.push_back(x);
+        p.z_mm.push_back((1 - t) * measured.z_mm[next - 1] + t * measured.z_mm[next]);
+    }
+    return p;
 }
 
 Tally measure(double radius_mm, const Sensing& sensing, int trials, std::mt19937_64& engine) {
@@ -119,12 +137,14 @@ Tally measure(double radius_mm, const Sensing& sensing, int trials, std::mt19937
                     edge[sheet] = sheet == 0 ? std::max(edge[0], along) : std::min(edge[1], along);
                 }
         Profile p;
-        for (double x = -14 + pitch_mm * uniform(engine); x < 14 + wanted; x += pitch_mm) {
+        const double step_mm = sensing.apart > 0 ? sensing.apart * pitch_mm : pitch_mm;
+        for (double x = -14 + step_mm * uniform(engine); x < 14 + wanted; x += step_mm) {
             int sheet = 0;
             const bool missing = uniform(engine) < sensing.missing;
             p.x_mm.push_back(x);
             p.z_mm.push_back(missing ? std::nan("") : scene.height(x, sheet) + noise_mm * normal(engine));
         }
+        if (sensing.apart > 0) p = laid_on_grid(p, step_mm, pitch_mm);
         smooth(p.z_mm, sensing.mean);
         EXPECT_TRUE(filter_profile(p, {}));
         GapFlushSettings settings;
@@ -152,12 +172,7 @@ TEST(GapWidth, IsAsSureAsItSaysOverPitchNoiseGapFlushAndRim) {
                 const Tally t = measure(radius, {pitch, noise}, 60, engine);
                 EXPECT_GE(t.ok, 0.7 * t.asked) << "radius " << radius << " pitch " << pitch << " " << noise;
                 EXPECT_LT(std::abs(t.error), 0.55 * t.sigma) << radius << " pitch " << pitch << " " << noise;
-                all.asked += t.asked;
-                all.ok += t.ok;
-                all.inside += t.inside;
-                all.far += t.far;
-                all.error += t.error;
-                all.sigma += t.sigma;
+                all.add(t);
             }
         EXPECT_GE(all.ok, 0.9 * all.asked) << radius;
         EXPECT_NEAR(double(all.inside) / all.ok, 0.95, 0.022) << radius;
@@ -205,10 +220,7 @@ TEST(GapWidth, GroundThatIsSeenInTheGapIsNoPanel) {
                         const Tally t = measure(radius, {pitch, pitch / 5, missing, mean, depth}, 15, engine);
                         EXPECT_GE(t.ok, 0.9 * t.asked)
                             << radius << " " << depth << " " << pitch << " " << mean;
-                        all.asked += t.asked;
-                        all.ok += t.ok;
-                        all.inside += t.inside;
-                        all.far += t.far;
+                        all.add(t);
                     }
             EXPECT_GE(all.ok, 0.98 * all.asked) << missing << " " << mean;
             EXPECT_GE(double(all.inside) / all.ok, 0.88) << missing << " " << mean;
@@ -224,14 +236,33 @@ TEST(GapWidth, IsAsSureAsItSaysOfASensorThatSmooths) {
             Tally all;
             for (const double pitch : {0.02, 0.05, 0.1}) {
                 const Tally t = measure(radius, {pitch, pitch / 5, 0.0, mean}, 60, engine);
-                all.ok += t.ok;
-                all.inside += t.inside;
-                all.far += t.far;
+                all.add(t);
             }
             EXPECT_GE(all.ok, 170);
             EXPECT_GE(double(all.inside) / all.ok, 0.83) << radius << " " << mean;
             EXPECT_LE(all.far, 2) << radius << " " << mean;
         }
+}
+
+// Points that lie denser than they were measured end before the last measured one, and draw a ramp down to ground that is seen.
+TEST(GapWidth, OnAGridDenserThanWhatWasMeasured) {
+    std::mt19937_64 engine(35);
+    Tally all;
+    for (const double apart : {1.4, 1.7, 1.9, 2.2, 2.6, 3.1})
+        for (const double radius : {0.0, 1.5})
+            for (const double ground : {0.0, 5.0}) {
+                Tally here;
+                for (const double pitch : {0.03, 0.06})
+                    for (const double noise : {0.01, 0.03})
+                        here.add(measure(radius, {pitch, noise, 0, 1, ground, apart}, 60, engine));
+                EXPECT_GE(double(here.inside) / here.ok, 0.75) << apart << " " << radius << " " << ground;
+                EXPECT_LE(here.far, 2) << apart << " " << radius << " " << ground;
+                EXPECT_LT(std::abs(here.error), 0.95 * here.sigma) << apart << " " << radius << " " << ground;
+                all.add(here);
+            }
+    EXPECT_EQ(all.ok, all.asked);
+    EXPECT_GE(double(all.inside) / all.ok, 0.9);
+    EXPECT_LE(all.far, 0.002 * all.ok);
 }
 
 // Panels of 15 and `right_mm` with a gap of 6 mm and ground 4 mm below between them; returns at 0.05 mm.
@@ -408,9 +439,7 @@ TEST(GapWidth, IsAsSureAsItSaysWhereReturnsAreMissing) {
         for (const double radius : {0.0, 1.2})
             for (const double pitch : {0.02, 0.05, 0.1}) {
                 const Tally t = measure(radius, {pitch, pitch / 5, missing}, 60, engine);
-                all.ok += t.ok;
-                all.inside += t.inside;
-                all.far += t.far;
+                all.add(t);
             }
         EXPECT_GE(all.ok, 353) << missing;
         EXPECT_GE(double(all.inside) / all.ok, 0.92) << missing;

@@ -56,6 +56,25 @@ Pose displacement() {
     return make_pose(rotation_exp({0.01, -0.008, 0.012}), {6, -4, 3});
 }
 
+TEST_F(Cli, CorrectAsksWhereTheTaughtPlacesAreInAnotherUnit) {
+    json job = door_job(8, displacement());
+    for (json& spot : job["spots"]) {
+        json& matrix = spot["workobject_from_sensor"]["matrix"];
+        for (const int at : {3, 7, 11}) matrix[at] = matrix[at].get<double>() / 1000;
+    }
+    const auto metres = run({"correct", write("metres.json", job.dump())});
+    EXPECT_EQ(metres.exit_code, 2);
+    EXPECT_THAT(metres.err, HasSubstr("the places look like metres"));
+
+    for (std::size_t i = 0; i < job["spots"].size(); ++i)
+        job["spots"][i]["workobject_from_sensor"] = {
+            {"xyz", {500 * std::cos(double(i)), 350 * std::sin(double(i)), 20}},
+            {"abc", {0.4 * double(i) - 1.5, 0, 3.14159}}};
+    const auto radian = run({"correct", write("radian.json", job.dump())});
+    EXPECT_EQ(radian.exit_code, 2);
+    EXPECT_THAT(radian.err, HasSubstr("the angles look like radian"));
+}
+
 TEST_F(Cli, CorrectAnswersDWithTheContractsFields) {
     const json a = answer({"correct", write("job.json", door_job(8, displacement()).dump())}, 0);
     EXPECT_EQ(a["status"], "ok");

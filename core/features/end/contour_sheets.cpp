@@ -16,9 +16,10 @@ constexpr int kStepSide = 12, kStepShort = 6, kStepFewest = 4, kStepBetween = 2;
 constexpr double kStepSigma = 6;
 constexpr double kWorthLooking = 0.3;  // of kStepSigma: lower jumps are none
 constexpr double kInterpolatedApart =
-    2.0 / 3;                   // points so many lines apart, over ProfileNoise::apart() of lines between them
-constexpr double kGoesOn = 5;  // sigma
-constexpr double kCloseUp = 4;  // sigma
+    2.0 / 3;  // points so many lines apart, over ProfileNoise::apart() of lines between them
+constexpr double kEvenly = 0.01, kFewSteps = 20;  // steps of a grid
+constexpr double kGoesOn = 5;                     // sigma
+constexpr double kCloseUp = 4;                    // sigma
 constexpr double kRisen = 0.75;
 constexpr double kStepRms = 1.6;     // sigma: a side that is no line
 constexpr double kBentPitch = 0.02;  // of the pitch, that it is off beside its noise
@@ -71,11 +72,11 @@ ContourSheets::Side ContourSheets::side(int from, int to, double at) const {
 }
 
 // How far the lines before and behind miss each other behind point i, `between` points standing there.
-ContourSheets::Jump ContourSheets::jump(int i, int between, int points) const {
+ContourSheets::Jump ContourSheets::jump(int i, int between, int points, bool over_hole) const {
     Jump j;
     const int next = i + 1 + between, n = static_cast<int>(all_x_.size());
-    if (next >= n || line_[next] - line_[i] > lines_.hole) return j;
-    if (between == 0 && run_[next] == 1) return j;
+    if (next >= n || (line_[next] - line_[i] > lines_.hole && !over_hole)) return j;
+    if (between == 0 && run_[next] == 1 && !over_hole) return j;
     int from = i - std::min(run_[i], points) + 1, to = next;
     while (to + 1 < n && to - next + 1 < points && run_[to + 1] > 1) ++to;
     for (int k = from; k < i; ++k)
@@ -184,17 +185,28 @@ void ContourSheets::divide(const Profile& profile) {
         for (int k = line_[i] + 1; k < line_[i + 1]; ++k)
             lines +=
                 !std::isfinite(profile.x_mm[std::size_t(k)]) || !std::isfinite(profile.z_mm[std::size_t(k)]);
-        // Lines that were not delivered at all show in x.
-        if (line_[i + 1] - line_[i] == 1 &&
-            pitch_.is_gap(all_x_[i + 1] - all_x_[i], all_z_[i + 1] - all_z_[i]))
-            lines = static_cast<int>(std::abs(all_x_[i + 1] - all_x_[i]) /
-                                     std::max(pitch_.along_x, kLeastPitch_mm));
+        // Lines that were not delivered at all show in x: of an even grid every one.
+        if (line_[i + 1] - line_[i] == 1) {
+            const double steps =
+                std::abs(all_x_[i + 1] - all_x_[i]) / std::max(pitch_.along_x, kLeastPitch_mm);
+            if (std::abs(steps - std::round(steps)) < kEvenly && steps < kFewSteps)
+                lines = static_cast<int>(std::lround(steps)) - 1;
+            else if (pitch_.is_gap(all_x_[i + 1] - all_x_[i], all_z_[i + 1] - all_z_[i]))
+                lines = static_cast<int>(steps);
+        }
         return lines;
     };
-    double runs = 0, pairs = 0;
-    for (int i = 0; i + 1 < n; ++i)
-        if (segment_[i] == segment_[i + 1]) ++pairs, runs += missing(i) > 0;
-    const double share = (runs + 0.5) / (pairs + 1);
+    double runs = 0, pairs = 0, way = 0, steps = 0;
+    for (int i = 0; i + 1 < n; ++i) {
+        if (segment_[i] != segment_[i + 1]) continue;
+        ++pairs, runs += missing(i) > 0;
+        const double dx = all_x_[i + 1] - all_x_[i];
+        if (line_[i + 1] - line_[i] == 1 && std::abs(dx) < kFewSteps * pitch_.along_x) ++steps, way += dx;
+    }
+    // Of lines that were not delivered and whose x has noise the mean step tells: longer than the median.
+    const double undelivered = way != 0 ? 1 - pitch_.along_x * steps / std::abs(way) : 0;
+    const double share = std::max((runs + 0.5) / (pairs + 1), undelivered);
+    lost_share_ = pairs > 0 ? runs / pairs : 0;
     const int hole = std::max(
         lines_.hole, share < 1
                          ? static_cast<int>(std::ceil(std::log(kByChance / std::max(n, 1)) / std::log(share)))
@@ -208,8 +220,10 @@ void ContourSheets::divide(const Profile& profile) {
     };
     // A border of the filter where no hole is and one side continues the other: noise made it.
     const auto goes_on = [&](int i) {
-        const Jump& j = jumps_[std::size_t(i)];
-        return j.spread > 0 && missing(i) < hole && j.height < kGoesOn * noise_ * j.spread;
+        if (missing(i) >= hole) return false;
+        const Jump& near = jumps_[std::size_t(i)];
+        const Jump j = near.spread > 0 ? near : jump(i, 0, lines_.side, true);
+        return j.spread > 0 && j.height < kGoesOn * noise_ * j.spread;
     };
     for (int i = 0, first = 0; i < n; ++i) {
         if (mixed_[i]) {

@@ -62,6 +62,7 @@ class ContourSheets {
     const std::vector<ContourSheet>& sheets() const { return sheets_; }
     double noise_mm() const { return noise_; }
     const ProfileNoise& noise() const { return profile_noise_; }  // without what the profile's shape adds
+    double lost_share() const { return lost_share_; }             // of the lines within a sheet, without return
 
   private:
     // The limits in lines of the profile, which may lie denser than what was measured (ContourNoise).
@@ -87,7 +88,7 @@ class ContourSheets {
                rms = 0;  // sigma of the height in units of the points'; of the points on the lines
         double longer = 0, shorter = 0;  // spacing of the two
     };
-    Jump jump(int i, int between, int points) const;
+    Jump jump(int i, int between, int points, bool over_hole = false) const;
     double step(const Jump& over_all, int i, int between) const;
     void find_steps();
     void judge_ends(const Profile& profile, const SensorField& field);
@@ -107,7 +108,7 @@ class ContourSheets {
     std::vector<double> x_, z_;
     std::vector<ContourSheet> sheets_;
     ContourPitch pitch_;
-    double noise_ = 0;
+    double noise_ = 0, lost_share_ = 0;
     ProfileNoise profile_noise_;
     Lines lines_;
 };

@@ -11,20 +11,22 @@
 //     - points that stand in a step behind the end and on neither sheet: as far as the farthest of them stands ahead;
 //     - an even grid of x whose noise runs from point to point: a sensor measured points f pitches apart and laid them on
 //       the grid (ContourNoise), so that the surface ends up to f p beyond what was measured last.
+// And where a share q of the lines within the sheet has no return (q beyond 0.01), so may the last ones: their mean number is
+// m = q / (1 - q), and the point lies m p farther out.
 //
 // Its covariance, along the tangent at the point and across it, of the likeliest curve, and beside it how far the curves end
 // apart. Noise model: independent, equal, across the
 // contour, its sigma from the fit's residuals, and not below what the profile's noise beside them makes likely; of
 // interpolated points 1.5 f times the variance, or what the residuals' likeness says (contour_noise.h).
 //     across   v + (k h^2 / 2)^2 + e^2 + d^2 + u n_z^2,   v the curves' mean there, h = r - q / 2, k the curvature
-//     along    (r^2 - 2 f p^2) / 12 + (r - q)^2 / 4 + noise^2 + s l^2 + g^2 / 36 + (m p n_x^2)^2
+//     along    (r^2 - 2 f p^2) / 12 + (r - q)^2 / 4 + noise^2 + s l^2 + g^2 / 36 + (w p n_x^2)^2 + m (1 + m) p^2
 // k h^2 / 2: beyond the last point the contour may bend on or go on straight. e, other shape than an
 // arc: the larger of the residuals' cubic part at the point, without what noise makes of it, and the
 // distance of the last point when the mean of the last three is more than 2.5 sigma / sqrt(3) off. d: a sensor that gives
-// means of neighbours (ProfileNoise::apart()), of m points on either side, has at the end only such of points inwards, which
-// draws the curve that way where the contour slopes; and on a bend every one lies k (m p)^2 / 6 on the inner side. Where more than
+// means of neighbours (ProfileNoise::apart()), of w points on either side, has at the end only such of points inwards, which
+// draws the curve that way where the contour slopes; and on a bend every one lies k (w p)^2 / 6 on the inner side. Where more than
 // four lines share their noise the contour seems half as steep there (d as for twice that slope), and the last point is drawn
-// along it, m p n_x^2; of fewer that term is 0, light on a rough surface is shared as far. u: of the rounding of z
+// along it, w p n_x^2; of fewer that term is 0, light on a rough surface is shared as far. u: of the rounding of z
 // (contour_noise.h) what the residuals do not show, for on a level sheet all points are rounded alike; n the normal.
 // The end is spread evenly over the reach r from the last point on. A plain end: r = q = p, hence p^2 / 12; an interpolated
 // one is spread over p and over f p, narrower than evenly over both. Else the largest of
@@ -89,6 +91,7 @@ constexpr double kEndGrazed_rad = 1.13, kEndGrazing_rad = 1.27, kEndLight_rad = 
 constexpr double kEndEven = 1e-4;  // steps: less is rounding
 // Pitches of an interpolation that its noise does not show; of the square of that: one even grid in six is such a one.
 constexpr double kEndUnseenApart = 0.9, kEndUnseenVariance = 1.0 / 36;
+constexpr double kEndSeldomLost = 0.01, kEndMostLost = 0.5;  // share of lines
 constexpr double kEndFull = 0.75;  // of the intensities' upper quartile: as bright as before the end
 
 std::vector<ParameterInfo> contour_end_parameters() {
@@ -186,7 +189,8 @@ class ContourEnd final : public FeatureFinder {
         const double grazing = rounded ? grazing_variance(curve, curve.tangent(last_s), pitch) : 0;
         const double along = (reach * reach - 2 * pitch * measured) / 12 +
                              (reach - step) * (reach - step) / 4 + noise * noise + grazing +
-                             kEndUnseenVariance * unseen + drawn_along(pitch, tangent);
+                             lost_lines() * (1 + lost_lines()) * pitch * pitch + kEndUnseenVariance * unseen +
+                             drawn_along(pitch, tangent);
         feature.covariance_mm2 =
             across * normal * normal.transpose() + along * tangent * tangent.transpose() + differ;
         feature.rms_mm = curve.rms_mm;
@@ -232,12 +236,17 @@ class ContourEnd final : public FeatureFinder {
     struct Beyond {
         double s, step, pitch, measured, unseen;
     };
+    // Where a share of the lines has no return, so may the last ones of the surface: their mean number, and its variance.
+    double lost_lines() const {
+        const double q = std::clamp(sheets_.lost_share() - kEndSeldomLost, 0.0, kEndMostLost);
+        return q / (1 - q);
+    }
     Beyond beyond_last(const EndCurve& curve, double mixed_ahead, double apart) const {
         const double last = curve.along(point(0));
         const double pitch = pitch_at(curve, curve.tangent(last));
         const double measured = apart * pitch, step = pitch + mixed_ahead + measured;
         const double unseen = unseen_beyond(curve, curve.tangent(last), pitch, apart);
-        return {last + 0.5 * step, step, pitch, measured, unseen};
+        return {last + 0.5 * step + lost_lines() * pitch, step, pitch, measured, unseen};
     }
 
     // The points within `length` of the end, from the end inwards.

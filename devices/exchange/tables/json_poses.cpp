@@ -19,16 +19,11 @@ namespace {
 constexpr double kMostAngle_deg = 720;
 constexpr double kTurnWithin = 2e-3;  // of a half or a quarter turn, rad
 
-// A sensor that looks straight ahead has angles of a few degrees: only a half or a quarter turn in radian is surely one.
 bool of_radian(const std::vector<WrittenRow>& rows) {
-    bool turned = false;
+    std::vector<double> angles;
     for (const WrittenRow& row : rows)
-        for (std::size_t i = 3; i < 6; ++i) {
-            const double angle = std::abs(row.numbers[i]);
-            if (angle > kPi + kTurnWithin) return false;
-            turned = turned || std::abs(angle - kPi) < kTurnWithin || std::abs(angle - kPi / 2) < kTurnWithin;
-        }
-    return turned;
+        angles.insert(angles.end(), row.numbers.begin() + 3, row.numbers.begin() + 6);
+    return turns_of_radian(angles);
 }
 
 // Poses of one notation, each with its place among all.
@@ -136,6 +131,16 @@ class JsonPoses {
 };
 
 }  // namespace
+
+bool turns_of_radian(std::span<const double> angles) {
+    bool turned = false;
+    for (const double signed_angle : angles) {
+        const double angle = std::abs(signed_angle);
+        if (!(angle <= kPi + kTurnWithin)) return false;
+        turned = turned || std::abs(angle - kPi) < kTurnWithin || std::abs(angle - kPi / 2) < kTurnWithin;
+    }
+    return turned;
+}
 
 Expected<PoseTable> parse_json_poses(std::string_view text, const std::string& where,
                                      const PoseLayout& layout) {

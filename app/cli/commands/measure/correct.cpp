@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,9 +14,11 @@
 #include "app/cli/command.h"
 #include "app/cli/commands/measure/contour_spot.h"
 #include "core/correction/correction.h"
+#include "core/geometry/notation.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "devices/exchange/tables/json_poses.h"
 
 namespace seamwright::cli {
 namespace {
@@ -190,6 +193,28 @@ Expected<FreeDof> read_free(const json& list) {
     return free;
 }
 
+// Spots that all lie within so little of each other were written in metres: no part has its edges there.
+constexpr double kPartOfMetres = 3;
+
+Expected<void> check_units(const std::vector<SpotObservation>& spots) {
+    std::vector<double> angles;
+    Eigen::AlignedBox3d places;
+    for (const SpotObservation& spot : spots) {
+        const KukaAbc abc = kuka_from_rotation(spot.workobject_from_sensor.linear());
+        angles.insert(angles.end(), {abc.a_deg, abc.b_deg, abc.c_deg});
+        places.extend(spot.workobject_from_sensor.translation());
+    }
+    const Text where("spots.workobject_from_sensor");
+    if (turns_of_radian(angles))
+        return input_error("the angles look like radian: a half or a quarter turn is among them", where,
+                           "write degrees");
+    const double apart = spots.size() > 1 ? places.sizes().maxCoeff() : 0;
+    if (apart > 0 && apart < kPartOfMetres && places.min().cwiseAbs().maxCoeff() < 10 * kPartOfMetres)
+        return input_error(Text("all spots lie within {:.3f} mm: the places look like metres", apart), where,
+                           "write millimetres");
+    return {};
+}
+
 Expected<Job> read_job(const std::string& file, bool needs_measured) {
     SEAM_TRY(auto text, read_text_file(file));
     SEAM_TRY(auto document, parse_json(text, file));
@@ -207,6 +232,7 @@ Expected<Job> read_job(const std::string& file, bool needs_measured) {
         else if (!refused.insert(spot.id).second)
             return input_error(Text("\"{}\" is named twice", spot.id), json_path("spots", i));
     }
+    SEAM_OK(check_units(job.spots));
     for (const SpotObservation& spot : job.spots)
         if (refused.contains(spot.id)) return input_error(Text("\"{}\" is named twice", spot.id), "spots");
     if (document.contains("free") && !document["free"].is_null()) {

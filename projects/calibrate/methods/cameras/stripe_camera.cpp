@@ -234,7 +234,8 @@ CalibrationMethod stripe_camera_method() {
     m.help = "Intrinsics, laser plane and hand-eye from images of a board and the stripe";
     m.usage = "images --board 7x6 --pitch-mm 10 --report report.html";
     m.layout =
-        R"({"board":{"columns","rows","pitch_mm"},"frames":[{"id"?,"size":[W,H],"scan":"rows"|"columns",
+        R"({"board":{"columns","rows","pitch_mm","pattern"?:"chessboard"|"circles"|"charuco"|"aprilgrid","marker_mm"?,
+   "dictionary"?,"legacy"?:true|false},"frames":[{"id"?,"size":[W,H],"scan":"rows"|"columns",
    "board":{"pixel":[[u,v],..],"index":[row*columns+column,..],"symmetry","detector"} or null,
    "stripe":[[u,v],..],"base_from_flange":POSE or null},..],
    "robot":{"sigma_mm","sigma_deg"?}?})";

@@ -62,7 +62,7 @@ class ContourSheets {
     const std::vector<ContourSheet>& sheets() const { return sheets_; }
     double noise_mm() const { return noise_; }
     const ProfileNoise& noise() const { return profile_noise_; }  // without what the profile's shape adds
-    double lost_share() const { return lost_share_; }             // of the lines within a sheet, without return
+    double lost_share() const { return lost_share_; }  // of the lines within a sheet, without return
 
   private:
     // The limits in lines of the profile, which may lie denser than what was measured (ContourNoise).

@@ -65,6 +65,12 @@ TEST_F(Cli, CorrectAsksWhereTheTaughtPlacesAreInAnotherUnit) {
     const auto metres = run({"correct", write("metres.json", job.dump())});
     EXPECT_EQ(metres.exit_code, 2);
     EXPECT_THAT(metres.err, HasSubstr("the places look like metres"));
+    // A sensor that is turned about one hole: who says so is believed.
+    job["units"] = "mm deg";
+    EXPECT_NE(run({"correct", write("hole.json", job.dump())}).exit_code, 2);
+    job["units"] = "m";
+    EXPECT_EQ(run({"correct", write("other.json", job.dump())}).exit_code, 2);
+    job.erase("units");
 
     for (std::size_t i = 0; i < job["spots"].size(); ++i)
         job["spots"][i]["workobject_from_sensor"] = {

@@ -193,7 +193,10 @@ Expected<FreeDof> read_free(const json& list) {
     return free;
 }
 
-// Spots that all lie within so little of each other were written in metres: no part has its edges there.
+// What a job says of its numbers where they look like others; nothing else is read.
+constexpr const char* kUnits = "mm deg";
+// Places within so little of each other, and ten times that of the part's frame, look like metres. Those of a sensor that is
+// turned about one hole lie so in millimetres.
 constexpr double kPartOfMetres = 3;
 
 Expected<void> check_units(const std::vector<SpotObservation>& spots) {
@@ -205,20 +208,26 @@ Expected<void> check_units(const std::vector<SpotObservation>& spots) {
         places.extend(spot.workobject_from_sensor.translation());
     }
     const Text where("spots.workobject_from_sensor");
+    const Text mend("write millimetres and degrees, or \"units\":\"{}\" beside the spots where they are",
+                    kUnits);
     if (turns_of_radian(angles))
         return input_error("the angles look like radian: a half or a quarter turn is among them", where,
-                           "write degrees");
+                           mend);
     const double apart = spots.size() > 1 ? places.sizes().maxCoeff() : 0;
     if (apart > 0 && apart < kPartOfMetres && places.min().cwiseAbs().maxCoeff() < 10 * kPartOfMetres)
         return input_error(Text("all spots lie within {:.3f} mm: the places look like metres", apart), where,
-                           "write millimetres");
+                           mend);
     return {};
 }
 
 Expected<Job> read_job(const std::string& file, bool needs_measured) {
     SEAM_TRY(auto text, read_text_file(file));
     SEAM_TRY(auto document, parse_json(text, file));
-    SEAM_OK(only_fields(document, {"spots", "free", "limits", "sensors"}, ""));
+    SEAM_OK(only_fields(document, {"spots", "free", "limits", "sensors", "units"}, ""));
+    SEAM_TRY(const auto units, json_string_or(document, "units", "", ""));
+    if (!units.empty() && units != kUnits)
+        return input_error(Text("\"{}\" are no units of a job", units), "units",
+                           Text("write millimetres and degrees, and \"{}\" here or nothing", kUnits));
     SEAM_TRY(auto spots, json_array(document, "spots", ""));
     Job job;
     const std::filesystem::path folder = std::filesystem::path(file).parent_path();
@@ -232,7 +241,9 @@ Expected<Job> read_job(const std::string& file, bool needs_measured) {
         else if (!refused.insert(spot.id).second)
             return input_error(Text("\"{}\" is named twice", spot.id), json_path("spots", i));
     }
-    SEAM_OK(check_units(job.spots));
+    if (units.empty()) {
+        SEAM_OK(check_units(job.spots));
+    }
     for (const SpotObservation& spot : job.spots)
         if (refused.contains(spot.id)) return input_error(Text("\"{}\" is named twice", spot.id), "spots");
     if (document.contains("free") && !document["free"].is_null()) {
@@ -374,7 +385,10 @@ void add_correct(CommandLine& line) {
         "  the registration of `match`, whose covariance enters; \"window\":[dx,dz,dphi] is how far it is "
         "looked "
         "for. One that\n"
-        "  slides or fits at two places is refused by name, and the others decide.");
+        "  slides or fits at two places is refused by name, and the others decide.\n"
+        "  Places that look like metres and angles that look like radian are asked for: \"units\":\"mm deg\" "
+        "says "
+        "that they are none.");
     auto file = std::make_shared<std::string>();
     command->add_option("job", *file, "The job (JSON)")->required()->type_name("JOB.json");
     line.on(command, [file] { return correct(*file); });
